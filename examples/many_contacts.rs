@@ -92,7 +92,7 @@ impl Request {
         let response = self.plate.tips()[0] + Z;
         let begin = Instant::now();
         let interrupt = Interrupt::none();
-        let mut problem = HarmonicBalance::new(&condensed, response, (omega, omega), 0, None, &interrupt)?;
+        let mut problem = HarmonicBalance::new(&condensed, response, omega.into(), 0, None, &interrupt)?;
         let mut forces = ContactForces::new(&condensed, 0, &interrupt)?;
         let n = problem.size();
         let mut u = vec![0.0; n];

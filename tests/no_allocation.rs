@@ -110,7 +110,7 @@ fn no_evaluation_allocates(model: &Model) {
         let omega = TAU * 208.85;
         let condensed = Condensed::new(model, &options, omega, &Interrupt::none()).unwrap();
         let interrupt = Interrupt::none();
-        let mut problem = HarmonicBalance::new(&condensed, 0, (1.0, 1.0), samples, None, &interrupt).unwrap();
+        let mut problem = HarmonicBalance::new(&condensed, 0, (1.0, 1.0).into(), samples, None, &interrupt).unwrap();
         let n = problem.size();
         let mut u = vec![0.0; n];
         let mut at = Residual::new(n).unwrap();
@@ -219,7 +219,7 @@ fn many_contacts_along_a_sweep_allocate_only_where_a_panel_is_laid() {
     let condensed = Condensed::new(&model, &options, 0.8, &Interrupt::none()).unwrap();
     assert_eq!(condensed.reference(), Reference::Stuck);
     let interrupt = Interrupt::none();
-    let mut problem = HarmonicBalance::new(&condensed, 0, (0.8, 0.9), 0, None, &interrupt).unwrap();
+    let mut problem = HarmonicBalance::new(&condensed, 0, (0.8, 0.9).into(), 0, None, &interrupt).unwrap();
     let size = problem.size();
     let mut v = vec![0.0; size + 1];
     assert!(problem.initial_guess(InitialGuess::Stuck, 0.8, &mut v[..size]).unwrap());
@@ -261,7 +261,7 @@ fn newton_iterations_allocate_nothing_but_the_tangent_that_a_point_keeps() {
         let omega = TAU * 208.85;
         let condensed = Condensed::new(&model, &options, omega, &Interrupt::none()).unwrap();
         let interrupt = Interrupt::none();
-        let mut problem = HarmonicBalance::new(&condensed, 0, (1.0, 1.0), samples, None, &interrupt).unwrap();
+        let mut problem = HarmonicBalance::new(&condensed, 0, (1.0, 1.0).into(), samples, None, &interrupt).unwrap();
         let n = problem.size();
         let mut v = vec![0.0; n + 1];
         assert!(problem.initial_guess(InitialGuess::Stuck, omega, &mut v[..n]).unwrap());
@@ -449,7 +449,7 @@ fn newton_iterations_with_contacts_of_several_directions_allocate_nothing() {
     let condensed = Condensed::new(&model, &options, omega, &Interrupt::none()).unwrap();
     assert_eq!(condensed.reference(), Reference::Stuck);
     let interrupt = Interrupt::none();
-    let mut problem = HarmonicBalance::new(&condensed, 0, (omega, 1.1 * omega), 0, None, &interrupt).unwrap();
+    let mut problem = HarmonicBalance::new(&condensed, 0, (omega, 1.1 * omega).into(), 0, None, &interrupt).unwrap();
     let size = problem.size();
     let mut v = vec![0.0; size + 1];
     problem

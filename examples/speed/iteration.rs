@@ -77,7 +77,7 @@ fn measure(force: f64, highest: usize, samples: usize) -> Result<Parts, Box<dyn 
     let never = Interrupt::none();
     let condensed = Condensed::new(&parameters.model()?, &options, omega, &never)?;
     let range = (207.0 * TAU, 211.0 * TAU);
-    let mut problem = HarmonicBalance::new(&condensed, model::B2, range, samples, None, &never)?;
+    let mut problem = HarmonicBalance::new(&condensed, model::B2, range.into(), samples, None, &never)?;
     let n = problem.size();
     let mut v = vec![0.0; n + 1];
     v[n] = omega;

@@ -8,11 +8,11 @@ use crate::interrupt::Interrupt;
 /// Harmonics of a contact force and their derivatives, all in packed form, one direction of the law after the other.
 #[derive(Clone, Debug)]
 pub struct Evaluation {
-    /// Directions d of the relative motion; m is the packed length of one signal.
+    /// Number d of directions of the relative motion; m is the packed length of one signal.
     pub directions: usize,
-    /// F, d·m numbers.
+    /// Harmonics F of the force, d·m numbers.
     pub force: Vec<f64>,
-    /// ∂F/∂X, (d·m)², column-major; empty where only the force is asked for.
+    /// ∂F/∂X, (d·m)², column-major; empty where only the force is requested.
     pub jacobian: Vec<f64>,
     /// F − ∂F/∂X · X, the derivative by ln s of s·F(X/s), the law at a motion s times smaller; work space without a Jacobian.
     pub offset: Vec<f64>,
@@ -71,7 +71,7 @@ impl Evaluation {
         })
     }
 
-    /// The same, and the caller may stop it.
+    /// Memory as `new` allocates it; the caller may stop the call.
     ///
     /// # Errors
     /// `OutOfMemory`, `StoppedByCaller`.
@@ -84,7 +84,7 @@ impl Evaluation {
         })
     }
 
-    /// Adds the share of the period that a state takes. Rounding leaves no sum above 1.
+    /// Adds a share of the period to that of slip or separation. Rounding never leads to a sum above 1.
     pub(super) fn count(&mut self, state: State, share: f64) {
         match state {
             State::Stick => {}

@@ -13,7 +13,7 @@ use crate::error::{Result, boxed, fail, try_push};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 
-/// Adds a part. A function of its own, so that parts take their share of a small stack one after the other.
+/// Adds a part made by `make`. It is a function of its own so that the parts use a small stack one after the other.
 #[inline(never)]
 fn added<T>(parts: &mut Vec<T>, make: impl FnOnce() -> Result<T>) -> Result<()> {
     try_push(parts, make()?, "the contact laws")
@@ -24,25 +24,25 @@ pub struct Evaluator {
     /// Laws on one relative motion.
     scalar: Scalar,
     smooth: Assembly,
-    /// Friction under a varying normal load.
+    /// Evaluator of friction under a varying normal load, if some law needs it.
     varying_load: Option<Box<VaryingNormalLoadEvaluator>>,
-    /// Friction in a plane, under constant and under varying loads.
+    /// Evaluators of friction in a plane, under constant and under varying loads.
     plane: Vec<PlaneFrictionEvaluator>,
-    /// Laws with states, by their directions, states and samples.
+    /// Evaluators of laws with states: one for each number of directions, states and samples.
     hysteretic: Vec<HystereticEvaluator>,
-    /// Laws without memory, by their directions and samples.
+    /// Evaluators of laws without memory: one for each number of directions and samples.
     memoryless: Vec<MemorylessEvaluator>,
     sampling: Sampling,
 }
 
-/// Numbers of samples for laws without exact events.
+/// Number of samples per period for laws without exact events.
 #[derive(Clone, Copy)]
 struct Sampling {
-    /// Samples requested; 0 selects the number of the law.
+    /// Number of samples that the caller requests; 0 selects the law's own number.
     requested: usize,
-    /// Factor of the number of the law.
+    /// Factor by which the law's own number is multiplied.
     refinement: usize,
-    /// Whether half of them are used, or twice as many where half are too few.
+    /// Whether to use half as many samples instead, or twice as many where half are too few.
     other: bool,
 }
 
@@ -58,11 +58,11 @@ impl Sampling {
     }
 }
 
-/// Evaluation of laws on one relative motion.
+/// Evaluation of laws with one relative motion.
 enum Scalar {
-    /// The events are located, the integrals are in closed form.
+    /// Events are located, integrals are in closed form.
     Exact(Box<Exact>),
-    /// The law is evaluated at equidistant samples.
+    /// The law is evaluated at equidistant times.
     Sampled(Box<Sampled>),
 }
 
@@ -75,7 +75,8 @@ impl Evaluator {
         Self::refined(set, (samples, 1), laws)
     }
 
-    /// As [`Self::refined`] for forces alone, into an [`Evaluation::force_alone`].
+    /// An evaluator for forces alone, as [`Self::refined`] otherwise; its results go to an
+    /// [`Evaluation::force_alone`].
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -92,7 +93,8 @@ impl Evaluator {
         Self::with(set, (sampling, true), laws)
     }
 
-    /// The same with a multiple of the samples of laws without exact events, where `samples` = 0.
+    /// An evaluator as `new` makes it, with `refinement` times as many samples for laws without exact events where
+    /// `samples` = 0.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -115,8 +117,8 @@ impl Evaluator {
         )
     }
 
-    /// The same with half as many samples, or twice as many where half are too few: the reference for the sampling
-    /// error of [`Self::refined`].
+    /// An evaluator with half as many samples, or twice as many where half are too few: the reference for the
+    /// sampling error of [`Self::refined`].
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -210,8 +212,8 @@ impl Evaluator {
         })
     }
 
-    /// Finds the turning points, or samples, of the packed motion of one relative coordinate, for every law on this
-    /// coordinate alone.
+    /// Finds the turning points, or the samples, of the packed motion of one relative coordinate, for every law on
+    /// this coordinate alone.
     ///
     /// # Errors
     /// `StoppedByCaller`.
@@ -290,8 +292,9 @@ impl Evaluator {
         }
     }
 
-    /// Samples per period at which `law` is evaluated on harmonics up to the reduced number `highest`, of `requested`
-    /// ones and with a factor of its own number; 0 where it is exact.
+    /// Samples per period at which `law` is evaluated on harmonics up to the reduced number `highest`, where the
+    /// caller requests `requested` samples or, if 0, `refinement` times the law's own number; 0 where the law is
+    /// exact.
     pub fn samples_of(law: &dyn Law, highest: usize, (requested, refinement): (usize, usize)) -> usize {
         let sampling = Sampling {
             requested,

@@ -30,21 +30,21 @@ const MARCHES: usize = 300;
 /// Tables and memory for marching one law over motions of one harmonic set.
 pub struct HystereticEvaluator {
     states: usize,
-    /// Common divisor g of the carried harmonics.
+    /// Common divisor g of the numbers of the carried harmonics.
     base: f64,
     signals: Signals,
-    /// Fourier weights of a packed signal.
+    /// Fourier weights of the numbers of a packed signal.
     weights: Vec<f64>,
-    /// Motion and velocity of a load from rest: two samples, the second at rest.
+    /// Motion and velocity of a straight load from zero, as two samples of a period: the loaded one, then zero.
     load_u: Vec<f64>,
     load_v: Vec<f64>,
     march: March,
     map: ReturnMap,
-    /// None where the force alone is evaluated.
+    /// Memory for derivatives; `None` where the force alone is evaluated.
     sensitivity: Option<Sensitivity>,
     /// Initial states of each march.
     starts: Vec<f64>,
-    /// Whether the start after each march is from Newton's method.
+    /// For each march, whether the next start follows from Newton's method.
     by_newton: Vec<bool>,
     step: Vec<f64>,
     marches: usize,
@@ -59,7 +59,7 @@ impl HystereticEvaluator {
         Self::with(set, law, samples, false)
     }
 
-    /// The same for the force alone.
+    /// Tables and memory for the force alone.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -171,7 +171,7 @@ impl HystereticEvaluator {
         self.find_period(law, omega, interrupt)
     }
 
-    /// Applies the weights to the Fourier sums and forms the offset.
+    /// Multiplies the Fourier sums by their weights, and computes the offset.
     fn finish(&self, motion: &[f64], out: &mut Evaluation) {
         let weigh = |sums: &mut [f64]| {
             for signal in sums.chunks_exact_mut(self.weights.len().max(1)) {
@@ -192,14 +192,15 @@ impl HystereticEvaluator {
         }
     }
 
-    /// Marches once from `starts[k]`.
+    /// Marches through one period from the states `starts[k]`.
     fn march_from(&mut self, law: &dyn Hysteretic, omega: f64, k: usize) -> Result<()> {
         let z0 = &self.starts[k * self.states..(k + 1) * self.states];
         let Signals { samples, u, v, .. } = &self.signals;
         law.march(omega, *samples, u, v, z0, &mut self.march)
     }
 
-    /// Loads the virgin law from rest straight to the motion of the last sample: the first start and its derivative.
+    /// Loads the law in its virgin state from zero straight to the motion of the last sample, which gives the first
+    /// start and its derivative.
     fn load(&mut self, law: &dyn Hysteretic, omega: f64) -> Result<()> {
         let Signals {
             samples,
@@ -222,7 +223,7 @@ impl HystereticEvaluator {
         Ok(())
     }
 
-    /// Finds states that return.
+    /// Finds initial states that return after one period.
     ///
     /// If a law keeps a state to which slip led, this state lies on the border of those without slip; its place there
     /// depends on the slip of the earlier marches, which a step of Newton's method does not follow. The law is then
@@ -247,7 +248,7 @@ impl HystereticEvaluator {
     }
 
     /// Marches from the first start until the states return up to round-off, with Newton's method up to the march
-    /// `newton_until`. Returns their difference at the last march, 0 if they return.
+    /// `newton_until`. Returns the difference of the states over the last march, 0 if they return.
     fn search(
         &mut self,
         law: &dyn Hysteretic,
@@ -303,8 +304,9 @@ impl HystereticEvaluator {
         Ok(0.0)
     }
 
-    /// Derivatives of the force by the motion and ω, those of the periodic start included. Only a start that is kept in
-    /// part depends on the earlier marches; their derivatives are then followed from the load on.
+    /// Computes the derivatives of the force by the motion and by ω, the effect on the periodic start included. Only
+    /// where a start is kept in part does it depend on the earlier marches; their derivatives are then followed from
+    /// the load on.
     fn differentiate(&mut self, law: &dyn Hysteretic, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
         let last = self.marches - 1;
         let Some(mut sensitivity) = self.sensitivity.take() else {
@@ -315,7 +317,7 @@ impl HystereticEvaluator {
         followed
     }
 
-    /// The same up to the march of number `last`, into `sensitivity`.
+    /// Follows the derivatives of the starts up to march number `last`, into `sensitivity`.
     fn follow(
         &mut self,
         sensitivity: &mut Sensitivity,

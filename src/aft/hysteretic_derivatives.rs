@@ -14,15 +14,15 @@ use std::f64::consts::TAU;
 /// Kind: block.
 const BATCH: usize = 32;
 
-/// The motion at the samples, with the tables from which it follows.
+/// The motion at the samples, with the tables from which it is computed.
 pub(super) struct Signals {
     pub samples: usize,
     pub directions: usize,
     /// Packed length m of one signal.
     length: usize,
-    /// bⱼ, samples × m.
+    /// Values bⱼ of the Fourier basis, samples × m.
     basis: Vec<f64>,
-    /// dbⱼ/dτ, samples × m; empty without velocities.
+    /// Slopes dbⱼ/dτ of the Fourier basis, samples × m; empty without velocities.
     rate: Vec<f64>,
     /// Motion, samples × d.
     pub u: Vec<f64>,
@@ -97,8 +97,8 @@ impl Signals {
         &self.rate[j * self.length..(j + 1) * self.length]
     }
 
-    /// Adds the derivatives of by_u·u + by_v·v at sample j, for rows of derivatives by the d motions, to those of one
-    /// value by (X, ω).
+    /// Adds the derivative of by_u·u + by_v·v at sample j by (X, ω) to `row`; `by_u` and `by_v` are derivatives by
+    /// the d motions and velocities.
     fn add(&self, j: usize, omega: f64, by_u: &[f64], by_v: &[f64], row: &mut [f64]) {
         let m = self.length;
         for (k, factor) in by_u.iter().enumerate() {
@@ -114,7 +114,7 @@ impl Signals {
     }
 }
 
-/// y += a x
+/// y ← y + a x.
 fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
     if a != 0.0 {
         for (y, x) in y.iter_mut().zip(x) {
@@ -129,20 +129,20 @@ fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
 /// derivatives by the start. Rows have d·m + 1 numbers for (X, ω), and s for the start.
 pub(super) struct Sensitivity {
     states: usize,
-    /// Directions d.
+    /// Number d of directions.
     directions: usize,
-    /// d·m + 1
+    /// Length d·m + 1 of a row of derivatives by (X, ω).
     width: usize,
-    /// Derivatives of the states at the start of the period by (X, ω), rows of d·m + 1.
+    /// Derivatives of the states at the start of the period by (X, ω), in rows of d·m + 1.
     start: Vec<f64>,
-    /// Derivatives of the start of the previous march.
+    /// Derivatives of the states at the start of the previous march.
     before: Vec<f64>,
-    /// Derivatives of the states at the current sample, and at the next.
+    /// Derivatives of the states at the current sample; and at the next one.
     now: Vec<f64>,
     next: Vec<f64>,
     /// Derivatives of the forces at the samples of a batch.
     force: Vec<f64>,
-    /// Their Fourier sums without weights, signal after signal.
+    /// Fourier sums of the derivatives of the force, without weights, signal after signal.
     sums: Vec<f64>,
     column: Vec<f64>,
 }
@@ -180,7 +180,8 @@ impl Sensitivity {
         self.width + self.states
     }
 
-    /// Sets the start after a load from rest to the last sample, whose step is the first of `march`.
+    /// Sets the derivatives of the start after a straight load from zero to the last sample, which is the first step
+    /// of `march`.
     pub fn load(&mut self, march: &March, signals: &Signals, omega: f64) {
         self.start.fill(0.0);
         let (d, last) = (signals.directions, signals.samples - 1);
@@ -191,7 +192,8 @@ impl Sensitivity {
         }
     }
 
-    /// Sets the start that returns, from that of the march followed last; see [`crate::aft::periodic_state`].
+    /// Sets the derivatives of the start that returns, from those of the march followed last; see
+    /// [`crate::aft::periodic_state`].
     pub fn periodic(&mut self, map: &ReturnMap) {
         std::mem::swap(&mut self.start, &mut self.before);
         let row = self.row();
@@ -203,7 +205,7 @@ impl Sensitivity {
         }
     }
 
-    /// Sets the end of the march followed last as the next start.
+    /// Takes the derivatives at the end of the last march as those of the next start.
     pub fn onward(&mut self) {
         std::mem::swap(&mut self.start, &mut self.before);
         let (row, width) = (self.row(), self.width);
@@ -276,7 +278,7 @@ impl Sensitivity {
         Ok(())
     }
 
-    /// Evaluates the derivatives of the force at sample j.
+    /// Computes the derivatives of the force at sample j.
     fn force_at(&mut self, march: &March, signals: &Signals, omega: f64, j: usize) {
         let (d, s, row) = (signals.directions, self.states, self.row());
         let slot = j % BATCH;
@@ -293,8 +295,8 @@ impl Sensitivity {
         }
     }
 
-    /// Adds the Fourier sums of the derivatives of the force, those of the start included, to `out`, without their
-    /// weights.
+    /// Adds the Fourier sums of the derivatives of the force, the effect of the start included, to `out`, without
+    /// their weights.
     pub fn add_to(&mut self, signals: &Signals, out: &mut Evaluation) {
         let (d, m, row, width) = (signals.directions, signals.length, self.row(), self.width);
         for i in 0..self.directions {

@@ -10,8 +10,8 @@ use crate::contact::piece::Piece;
 use crate::error::{Result, try_vec};
 use crate::fourier::{HarmonicSet, jet};
 use crate::interrupt::Interrupt;
+use crate::linalg::libraries::{Arch, Simd, WithSimd};
 use num_complex::Complex64;
-use pulp::{Arch, Simd, WithSimd};
 
 /// Number of products g ⊗ c per pass over the Jacobian, which at many harmonics exceeds the caches.
 /// Kind: block.
@@ -21,18 +21,18 @@ const MOST_PENDING: usize = 4;
 /// Kind: block.
 const JACOBIAN_ASSEMBLY_NUMBERS_TOGETHER: usize = 1 << 22;
 
-/// Collects the spectrum and the anchored pieces, then writes the [`Evaluation`].
+/// Collects the spectrum of the stiffness and the anchored pieces, then writes the [`Evaluation`].
 pub(super) struct Assembly {
     arch: Arch,
-    /// Sₙ for n = 0 ..= 2·(highest reduced harmonic).
+    /// Stiffness spectrum Sₙ for n = 0 ..= 2·(highest reduced harmonic).
     pub(super) spectrum: Vec<Complex64>,
     toeplitz: Toeplitz,
-    /// Packed g of the pending pieces, and of the current piece.
+    /// Packed transforms g of the pending pieces, and of the current piece.
     g: Vec<f64>,
-    /// Packed bases c(r) at their anchors times −k.
+    /// Packed bases c(r) at the anchors of the pending pieces, times −k.
     anchors: Vec<f64>,
     pending: usize,
-    /// Whether the Jacobian already holds products.
+    /// Whether the Jacobian already holds products of earlier passes.
     begun: bool,
 }
 
@@ -124,7 +124,7 @@ impl Assembly {
         Ok(())
     }
 
-    /// Writes the Jacobian, T(S) and the products, and the force.
+    /// Writes the Jacobian, which is T(S) plus the products g ⊗ c, and the force.
     pub(super) fn finish(
         &mut self,
         set: &HarmonicSet,
@@ -157,21 +157,21 @@ impl Assembly {
     }
 }
 
-/// Columns of m numbers between two checks.
+/// Number of columns of m numbers that are written between two checks of the interrupt.
 fn columns_together(m: usize) -> usize {
     (JACOBIAN_ASSEMBLY_NUMBERS_TOGETHER / m).max(1)
 }
 
-/// Packed anchors and g of products, one after the other, and their number.
+/// Packed anchors and transforms g of the products g ⊗ c, and the number of products.
 type Products<'a> = (&'a [f64], &'a [f64], usize);
 
-/// Columns of the Jacobian, and the sum of their products with the motion, to which the force holds the offset.
+/// Some columns of the Jacobian, and the sum of their products with the motion; the force holds the offset at first.
 struct Columns<'a> {
     toeplitz: &'a Toeplitz,
     products: Products<'a>,
-    /// Whether the Jacobian already holds products.
+    /// Whether the Jacobian already holds products of earlier passes.
     begun: bool,
-    /// Number of the first column.
+    /// Index of the first column.
     first: usize,
     motion: &'a [f64],
     jacobian: &'a mut [f64],
@@ -203,7 +203,7 @@ impl WithSimd for Columns<'_> {
 }
 
 impl Columns<'_> {
-    /// For signals of length N; 0: of any length.
+    /// Writes columns for signals of length N, known at compile time; 0: of any length.
     #[inline(always)]
     fn write<const N: usize>(mut self) {
         if N > 0 && N.is_multiple_of(2) && !self.begun && self.write_paired::<N>() {
@@ -251,7 +251,8 @@ impl Columns<'_> {
 }
 
 impl Columns<'_> {
-    /// The same for signals of length N without a mean, where no products are held yet; `false` where the lengths differ.
+    /// Writes columns for signals of length N without a mean, where no products are held yet; `false` where the
+    /// lengths differ.
     #[inline(always)]
     fn write_paired<const N: usize>(&mut self) -> bool {
         let (anchors, g, count) = self.products;
@@ -285,7 +286,7 @@ impl Columns<'_> {
     }
 }
 
-/// column += Σ cⱼ g
+/// column ← column + Σ cⱼ g over the products.
 fn add_products(column: &mut [f64], (anchors, g, count): Products<'_>, j: usize) {
     let m = column.len().max(1);
     for (c, g) in anchors.chunks_exact(m).zip(g.chunks_exact(m)).take(count) {

@@ -9,16 +9,16 @@ use num_complex::Complex64;
 /// A square block of a column-major matrix.
 pub(super) struct Block<'a> {
     matrix: &'a mut [f64],
-    /// Rows of the matrix.
+    /// Number of rows of the whole matrix.
     rows: usize,
     /// Index of the block's first entry.
     first: usize,
-    /// Rows of the block.
+    /// Number of rows of the block.
     size: usize,
 }
 
 impl<'a> Block<'a> {
-    /// ∂F_i/∂X_j of a matrix over `directions` directions.
+    /// Block ∂F_i/∂X_j of a matrix over `directions` directions, each with `size` numbers.
     pub(super) fn new(matrix: &'a mut [f64], directions: usize, size: usize, [i, j]: [usize; 2]) -> Self {
         let rows = directions * size;
         Self {
@@ -29,7 +29,7 @@ impl<'a> Block<'a> {
         }
     }
 
-    /// Adds factor·g ⊗ c.
+    /// Adds the outer product factor·g ⊗ c.
     pub(super) fn add_product(&mut self, factor: f64, g: &[f64], c: &[f64]) {
         for (j, c) in c.iter().enumerate() {
             let from = self.first + j * self.rows;
@@ -40,7 +40,7 @@ impl<'a> Block<'a> {
         }
     }
 
-    /// Adds T(S).
+    /// Adds the operator T(S) of a stiffness spectrum S.
     pub(super) fn add_toeplitz(&mut self, toeplitz: &Toeplitz) {
         toeplitz.add(&mut self.matrix[self.first..], self.rows);
     }
@@ -59,7 +59,7 @@ pub(super) fn pack(set: &HarmonicSet, transform: &[Complex64], g: &mut [f64]) {
     }
 }
 
-/// force = offset + jacobian · motion.
+/// force ← offset + jacobian · motion.
 pub(super) fn apply(jacobian: &[f64], motion: &[f64], offset: &[f64], force: &mut [f64]) {
     force.copy_from_slice(offset);
     add_product(1.0, jacobian, motion, force);

@@ -24,25 +24,25 @@ pub struct MemorylessEvaluator {
     directions: usize,
     velocity: bool,
     half_suffices: bool,
-    /// Requested samples per period.
+    /// Number of samples per period that was requested.
     requested: usize,
     transform: Transform,
-    /// Motions and velocities, samples × d.
+    /// Motions and velocities at the samples, samples × d each.
     u: Vec<f64>,
     v: Vec<f64>,
-    /// Forces, samples × d, and their tangents, samples × d × d.
+    /// Forces at the samples, samples × d, and their tangents, samples × d × d.
     f: Vec<f64>,
     df_du: Vec<f64>,
     df_dv: Vec<f64>,
     scratch: Vec<f64>,
-    /// Harmonics 0 ..= 2·highest of the current transform.
+    /// Harmonics 0 ..= 2·highest of the signal transformed last.
     spectrum: Vec<Complex64>,
     toeplitz: Toeplitz,
-    /// ih·X, d·m.
+    /// Harmonics ih·X of the derivative by the reduced time, d·m numbers.
     quadrature: Vec<f64>,
-    /// A packed velocity, m.
+    /// Packed harmonics of one velocity, m numbers.
     packed: Vec<f64>,
-    /// T(Sᵛ) of one pair of directions, m × m.
+    /// Operator T(Sᵛ) of one pair of directions, m × m.
     block: Vec<f64>,
 }
 
@@ -55,7 +55,7 @@ impl MemorylessEvaluator {
         Self::with(set, law, requested, false)
     }
 
-    /// The same for the force alone.
+    /// Memory for the force alone.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -164,7 +164,7 @@ impl MemorylessEvaluator {
         Ok(())
     }
 
-    /// Samples of the motions and their velocities.
+    /// Computes motions and velocities at the samples.
     fn sample(&mut self, set: &HarmonicSet, omega: f64, motion: &[f64], interrupt: &Interrupt<'_>) -> Result<()> {
         let m = set.packed_len();
         let step = self.directions;
@@ -189,7 +189,7 @@ impl MemorylessEvaluator {
         Ok(())
     }
 
-    /// Packed harmonics of the forces.
+    /// Computes the packed harmonics of the forces.
     fn forces(&mut self, set: &HarmonicSet, out: &mut Evaluation) {
         let (m, step) = (set.packed_len(), self.directions);
         let harmonics = &mut self.spectrum[..=set.highest_reduced()];
@@ -208,7 +208,7 @@ impl MemorylessEvaluator {
         }
     }
 
-    /// Jacobian and ∂F/∂ω, one pair of directions after the other.
+    /// Computes the Jacobian and ∂F/∂ω, one pair of directions after the other.
     fn tangents(
         &mut self,
         set: &HarmonicSet,

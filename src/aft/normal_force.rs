@@ -17,7 +17,7 @@ use crate::interrupt::Interrupt;
 pub(super) struct Normal {
     set: HarmonicSet,
     evaluator: VaryingNormalLoadEvaluator,
-    /// Result in a tangential direction without force, and in the normal one.
+    /// Evaluation with a tangential direction without force, and the normal direction.
     found: Evaluation,
 }
 
@@ -44,7 +44,7 @@ impl Normal {
         self.found.open_fraction
     }
 
-    /// Writes force, Jacobian and offset of the last of several motions.
+    /// Writes force, Jacobian and offset for the last of the motions, which is the normal one.
     pub fn evaluate(
         &mut self,
         law: &dyn VaryingNormalLoad,

@@ -28,15 +28,15 @@ const TOGETHER: usize = 16;
 /// Kind: rounding.
 const NOTHING: f64 = 1e-9;
 
-/// The linearised map over one period.
+/// Linearised map of the states over one period.
 pub(super) struct ReturnMap {
     states: usize,
-    /// P, row-major.
+    /// Derivative P of the states at the end by those at the start, row-major.
     p: Vec<f64>,
-    /// Π, row-major.
+    /// Projector Π onto the states that return unchanged, row-major.
     kept: Vec<f64>,
     scratch: Vec<f64>,
-    /// Factors of I − P + Π.
+    /// LU factors of I − P + Π.
     factors: Lu<f64>,
     /// Whether Π is not zero.
     pub has_kept: bool,
@@ -92,8 +92,8 @@ impl ReturnMap {
         }
     }
 
-    /// Π = lim ((I + P)/2)^(2ⁿ): the mean with I keeps an eigenvalue of 1 and damps all others on the unit circle, −1
-    /// among them.
+    /// Computes Π = lim ((I + P)/2)^(2ⁿ): the mean with I keeps an eigenvalue of 1 and damps all others on the unit
+    /// circle, −1 among them.
     fn project(&mut self) {
         let s = self.states;
         unit(s, &mut self.kept);
@@ -121,7 +121,7 @@ impl ReturnMap {
         }
     }
 
-    /// δ = (I − P + Π)⁻¹ b in place.
+    /// b ← δ = (I − P + Π)⁻¹ b.
     pub fn solve(&self, b: &mut [f64]) {
         self.factors.solve(b);
     }
@@ -145,7 +145,7 @@ impl ReturnMap {
     }
 }
 
-/// Largest magnitude; NaN if any value is NaN.
+/// Largest modulus of some values; NaN if any value is NaN.
 pub(super) fn largest(values: &[f64]) -> f64 {
     values
         .iter()
@@ -157,7 +157,7 @@ fn unit(n: usize, a: &mut [f64]) {
     a.iter_mut().step_by(n + 1).for_each(|x| *x = 1.0);
 }
 
-/// c = a b, row-major.
+/// c ← a b for n × n matrices, row-major.
 fn product(n: usize, a: &[f64], b: &[f64], c: &mut [f64]) {
     for (row, out) in a.chunks_exact(n.max(1)).zip(c.chunks_exact_mut(n.max(1))) {
         out.fill(0.0);

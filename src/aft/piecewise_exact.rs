@@ -12,8 +12,8 @@ use crate::error::{Error, Result, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, TurningPoints};
 use crate::interrupt::Interrupt;
+use crate::linalg::libraries::{Arch, Simd, WithSimd};
 use num_complex::Complex64;
-use pulp::{Arch, Simd, WithSimd};
 use std::f64::consts::TAU;
 
 /// Tables and memory of the exact evaluation for one harmonic set.
@@ -134,10 +134,10 @@ pub(super) fn transform([a, b]: [f64; 2], scale: f64, turn: f64, out: &mut [Comp
 /// Kind: block.
 const SIDE_BY_SIDE: usize = 4;
 
-/// zₙ = middleⁿ·(factor·Im halfⁿ/n) for n from 1 on.
+/// Computes zₙ = middleⁿ·(factor·Im halfⁿ/n) for n from 1 on.
 struct Harmonics<'a>(Complex64, Complex64, f64, &'a mut [Complex64]);
 
-/// Four complex numbers, real parts first.
+/// Four complex numbers: all real parts, then all imaginary parts.
 type Powers = [[f64; SIDE_BY_SIDE]; 2];
 
 impl WithSimd for Harmonics<'_> {
@@ -161,7 +161,7 @@ impl WithSimd for Harmonics<'_> {
     }
 }
 
-/// z, z², z³, z⁴ and z⁴.
+/// Powers z, z², z³, z⁴; and z⁴ alone.
 #[inline(always)]
 #[allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
 fn powers(z: Complex64) -> (Powers, Complex64) {

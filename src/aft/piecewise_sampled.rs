@@ -18,7 +18,7 @@ const PRODUCTS_TOGETHER: usize = 1 << 20;
 
 /// Tables and memory of the sampled evaluation for one harmonic set.
 pub struct Sampled {
-    /// e^{−iτⱼ}
+    /// Factors e^{−iτⱼ} at the samples.
     turns: Vec<Complex64>,
     basis: Vec<f64>,
     samples: Vec<f64>,
@@ -127,7 +127,7 @@ impl Sampled {
     }
 }
 
-/// Samples between two checks, for so many numbers each.
+/// Number of samples between two checks of the interrupt, where each takes `numbers` operations.
 fn samples_together(numbers: usize) -> usize {
     (PRODUCTS_TOGETHER / numbers.max(1)).max(1)
 }

@@ -15,7 +15,7 @@ use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 
 impl Assembly {
-    /// Evaluates a law without events.
+    /// Evaluates a law without events, whose tangent has a known spectrum.
     pub(super) fn spectral(
         &mut self,
         law: &dyn Spectral,

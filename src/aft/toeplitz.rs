@@ -14,22 +14,22 @@ use num_complex::Complex64;
 /// Kind: block.
 const TOEPLITZ_NUMBERS_TOGETHER: usize = 1 << 22;
 
-/// The lists from which the columns of T(S) are read.
+/// Lists of numbers from which the columns of T(S) are read.
 pub(super) struct Toeplitz {
     /// Number of harmonics above the mean.
     order: usize,
     has_mean: bool,
-    /// Sₕ₋ₘ from the most negative difference on, and the same times i.
+    /// Entries Sₕ₋ₘ from the most negative difference on; and these times i.
     differences: [Vec<f64>; 2],
-    /// Sₕ₊ₘ from the smallest sum on, and the same times −i.
+    /// Entries Sₕ₊ₘ from the smallest sum on; and these times −i.
     sums: [Vec<f64>; 2],
-    /// The row of the mean.
+    /// Row of the mean.
     row: Vec<f64>,
-    /// 2·Sₕ, the column of the mean, and zeros, its second part.
+    /// Column of the mean: 2·Sₕ; and zeros as its second part.
     column: [Vec<f64>; 2],
 }
 
-/// A column of T(S): the entry in the row of the mean, and two sections whose sum the others are.
+/// A column of T(S): the entry in the row of the mean, and two sections whose sum is the rest of the column.
 #[derive(Clone, Copy)]
 pub(super) struct Column<'a> {
     pub(super) mean: f64,
@@ -56,7 +56,7 @@ impl Toeplitz {
         })
     }
 
-    /// Sets S, given for n from 0 to twice the highest reduced harmonic.
+    /// Sets the spectrum S, given for n from 0 to twice the highest reduced harmonic.
     pub(super) fn set(&mut self, set: &HarmonicSet, s: &[Complex64]) {
         let stride = set.stride();
         // S from the most negative difference on, and the same times i; S of the sums, and the same times −i.
@@ -83,7 +83,7 @@ impl Toeplitz {
         }
     }
 
-    /// The column of number `j` of a packed motion.
+    /// The column of T(S) that belongs to number `j` of a packed motion.
     #[inline]
     pub(super) fn column(&self, j: usize) -> Column<'_> {
         let mean = if self.has_mean { self.row[j] } else { 0.0 };
@@ -144,7 +144,7 @@ impl Toeplitz {
     }
 }
 
-/// The complex numbers of a list.
+/// The numbers of a list as complex numbers.
 #[inline]
 fn pairs(list: &mut [f64]) -> core::slice::IterMut<'_, [f64; 2]> {
     list.as_chunks_mut::<2>().0.iter_mut()

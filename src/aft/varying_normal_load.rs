@@ -73,7 +73,8 @@ impl VaryingNormalLoadEvaluator {
         &self.normal
     }
 
-    /// Force and Jacobian of `law` at the packed x, then the packed y, in `out` of two directions.
+    /// Force and Jacobian of `law` at the packed tangential motion x, followed by the packed normal motion y; `out`
+    /// has two directions.
     ///
     /// # Errors
     /// `StoppedByCaller`.

@@ -41,8 +41,9 @@ pub struct Validity {
     pub repeated: bool,
     /// True if the amplitude falls along the branch here, beyond a fold.
     pub turned: bool,
-    /// Amplitude over that of the computed resonance next to it, minus 1: of the response degree of freedom, with the
-    /// harmonics of the mode. NaN where no computed resonance was found, or none was sought.
+    /// Error of the synthesised amplitude against the computed resonance next to it, ratio minus 1, at the response
+    /// degree of freedom and with the harmonics of the mode. NaN where no computed resonance was found, or none was
+    /// sought.
     pub error: f64,
 }
 
@@ -55,13 +56,13 @@ const INACCURATE: f64 = 0.01;
 const OUTSIDE: f64 = 0.01;
 
 impl Validity {
-    /// Whether another mode lies within the bandwidth of this one, or shares its frequency.
+    /// Whether another mode lies within the half-power bandwidth, or shares the frequency.
     #[must_use]
     pub fn another_mode(&self) -> bool {
         self.repeated || self.other_mode <= 1.0
     }
 
-    /// Whether the computed amplitude differs by more than 1 %, or is not known.
+    /// Whether the amplitude is in error by more than 1 %, or its error is unknown.
     #[must_use]
     pub fn inaccurate(&self) -> bool {
         self.error.is_nan() || self.error.abs() >= INACCURATE
@@ -76,14 +77,14 @@ impl Validity {
     }
 }
 
-/// A synthesised resonance.
+/// A synthesised resonance of the mode under the forces.
 #[derive(Clone, Copy, Debug)]
 pub struct SynthesisPeak {
-    /// The response there.
+    /// The response at the resonance.
     pub at: SynthesisPoint,
     /// log₁₀ of the amplitude as the branch measures it.
     pub log10_amplitude: f64,
-    /// Whether the amplitude rises with the force here.
+    /// Whether the amplitude rises with the force at this resonance.
     ///
     /// If it does not, the resonance bounds a detached response from below.
     pub rising: bool,
@@ -91,7 +92,7 @@ pub struct SynthesisPeak {
     pub validity: Validity,
 }
 
-/// A synthesised response.
+/// A forced response synthesised from a nonlinear mode.
 #[derive(Clone, Debug)]
 pub struct Synthesis {
     /// The response in order of rising amplitude on the lower flank, then of falling amplitude on the upper one,
@@ -116,7 +117,7 @@ pub fn synthesise(branch: &Branch, model: &Model, options: &SynthesisOptions) ->
     synthesise_with(branch, model, options, &Interrupt::none())
 }
 
-/// The same as [`synthesise`], and the caller may stop it.
+/// Synthesises a response as [`synthesise`], and the caller may stop it.
 ///
 /// # Errors
 /// As [`synthesise`]; `StoppedByCaller`.
@@ -129,7 +130,7 @@ pub fn synthesise_with(
     with_motions(branch, model, options, None, interrupt)
 }
 
-/// The same as [`synthesise_with`], with the motions on request.
+/// Synthesises a response as [`synthesise_with`]; also collects the motions at its resonances, if requested.
 pub(crate) fn with_motions(
     branch: &Branch,
     model: &Model,
@@ -279,7 +280,8 @@ fn check_model(branch: &Branch, data: &ModeData, model: &Model) -> Result<()> {
     Ok(())
 }
 
-/// Both flanks of the response.
+/// The response on both flanks of the resonance: rising amplitudes on the lower one, then falling ones on the upper
+/// one.
 fn flanks(states: &[State]) -> Result<Vec<SynthesisPoint>> {
     let mut points = Vec::new();
     let lower = states.iter().map(|s| s.spread().and_then(|r| s.at(-r)));

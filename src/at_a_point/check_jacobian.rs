@@ -14,9 +14,8 @@ use crate::contact::samples::Samples;
 use crate::error::{Error, Result, fail, try_copy, try_vec};
 use crate::model::Model;
 
-/// Compares all tangents of the law of the caller that is contact `contact` with central differences, on a built-in
-/// motion with a mean and the harmonics 1 and 3, of about `amplitudes` in each direction, at the angular frequency
-/// `omega`.
+/// Compares all tangents of a caller's law, that of contact `contact`, with central differences. The motion is built
+/// in: a mean and the harmonics 1 and 3, of about `amplitudes` in each direction, at the angular frequency `omega`.
 ///
 /// # Errors
 /// `Index` for an unknown contact, `Argument` for a contact that is no law of the caller and for numbers out of
@@ -90,7 +89,8 @@ impl ForceAndTangents {
     }
 }
 
-/// Perturbs each direction at all samples at once, so that a force that depends on other times is detected as well.
+/// Compares the tangents of a law without memory. Each direction is perturbed at all samples at once, so that a force
+/// that depends on other times is detected as well.
 fn without_memory(law: &User, motion: &Motion) -> Result<JacobianGap> {
     let d = law.directions;
     let mut worst = JacobianGap::default();

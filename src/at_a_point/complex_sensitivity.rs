@@ -5,6 +5,7 @@
 use crate::error::{Result, fail, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
+use crate::options::Range;
 use crate::options::{Measure, Response};
 use crate::results::Branch;
 use crate::sensitivity::{ForcedPoint, Parameter, Reason, TotalDerivative, WaveMatrices, contact_at_onset};
@@ -16,19 +17,20 @@ const CONTEXT: &str = "the derivatives of a complex amplitude";
 /// A complex amplitude with its derivatives.
 #[derive(Clone, Debug)]
 pub struct ComplexSensitivities {
-    /// The amplitude X.
+    /// Complex amplitude X of the response.
     pub value: Complex64,
-    /// dX/dω along the branch.
+    /// Derivative dX/dω along the branch.
     pub by_omega: Complex64,
-    /// dX/dp at a fixed frequency, one for each parameter; NaN where there is none.
+    /// Derivatives dX/dp at a fixed frequency, one for each parameter; NaN where one does not exist.
     pub values: Vec<Complex64>,
-    /// The reasons of NaN.
+    /// Reason of each derivative that is NaN.
     pub reasons: Vec<Reason>,
 }
 
-/// Derivatives of the complex amplitude of a response at a stored point of a forced response by parameters of the model, which must be
-/// that of the computation of the branch. The branch need not have watched the response, whose measure is the fundamental or a harmonic;
-/// without degrees of freedom it is that of the response degree of freedom. They are exact for the harmonics of the point.
+/// Derivatives of the complex amplitude of a response at a stored point of a forced response by parameters of the
+/// model, which must be the one with which the branch was computed. The branch need not have watched the response.
+/// Its measure is the fundamental or a harmonic; without degrees of freedom it reads the response degree of freedom.
+/// Derivatives are exact for the harmonics of the point.
 ///
 /// # Errors
 /// `Index` for an unknown point, `Argument` for another model than that of the branch and for another measure, `Unsupported` for a
@@ -43,7 +45,7 @@ pub fn complex_sensitivity(
     complex_sensitivity_with(model, branch, point, response, parameters, &Interrupt::none())
 }
 
-/// The same as [`complex_sensitivity`], and the caller may stop it.
+/// Computes derivatives as [`complex_sensitivity`], and the caller may stop it.
 ///
 /// # Errors
 /// As [`complex_sensitivity`]; `StoppedByCaller`.
@@ -80,7 +82,7 @@ pub fn complex_sensitivity_with(
     let at = (branch, point);
     let omega = branch.omega_at(point).unwrap_or_default();
     let mut equations = Equations {
-        range: (omega, omega),
+        range: omega.into(),
         at: None,
     };
     complex_at(
@@ -92,15 +94,16 @@ pub fn complex_sensitivity_with(
     )
 }
 
-/// Equations of a curve near its points that derivatives were made of, and the frequencies between which they hold.
+/// Equations near the points of a curve for which derivatives were made, with the range of frequency in which they
+/// hold.
 pub(crate) struct Equations<'a> {
-    pub range: (f64, f64),
-    /// Those of the point before.
+    pub range: Range,
+    /// Equations of the last point; `None` before the first.
     pub at: Option<ForcedPoint<'a>>,
 }
 
 impl<'a> Equations<'a> {
-    /// Those of a point that watch a response; the last ones where they are the same.
+    /// The equations of a point that watch a response; the last ones are used again where they are valid.
     fn of(
         &mut self,
         (branch, point): (&'a Branch, usize),
@@ -137,9 +140,9 @@ impl<'a> Equations<'a> {
     }
 }
 
-/// The same without checks; without `two_sided` a contact at the onset of slip has the derivatives of the side that its evaluation takes.
-/// The matrices of the structure are kept in `matrices` for further points of the same model, and the equations in `equations` for those of
-/// the same branch and response.
+/// Computes derivatives without checks. Without `two_sided`, a contact at the onset of slip has the derivatives of
+/// the side that its evaluation takes. The structure's matrices are kept in `matrices` for further points of the
+/// model, and the equations in `equations` for those of the branch and the response.
 ///
 /// # Errors
 /// As [`complex_sensitivity_with`].

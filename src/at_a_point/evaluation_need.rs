@@ -26,8 +26,8 @@ fn need_of_a_path(harmonics: usize) -> usize {
     count.saturating_mul(OF_PIECES).min(OF_A_PATH.saturating_add(panels))
 }
 
-/// Bytes that suffice for the evaluation of a law: 8 (1 + d) (2 d (H + 1))² for Jacobians, 250 a sample, of which a law that
-/// is always sampled takes at most 128 (H + 1) by itself, and 1 MiB; and the path of friction in a plane.
+/// Bytes that suffice to evaluate a law: 8 (1 + d) (2 d (H + 1))² for Jacobians, 250 a sample (of which a law that is
+/// always sampled takes at most 128 (H + 1) by itself), 1 MiB, and the path of friction in a plane.
 fn need_of_a_law(harmonics: usize, directions: usize, samples: usize) -> usize {
     let order = (harmonics + 1).saturating_mul(2 * directions);
     let samples = samples.max((harmonics + 1).saturating_mul(128));
@@ -39,8 +39,8 @@ fn need_of_a_law(harmonics: usize, directions: usize, samples: usize) -> usize {
         .saturating_add(1 << 20)
 }
 
-/// Bytes that suffice for the force of a law alone: 2.5 KiB for each of its d (H + 1) harmonics, 250 a sample where the law is
-/// sampled, 1 MiB, and for friction in a plane the pieces of its path.
+/// Bytes that suffice for the force of a law without Jacobian: 2.5 KiB for each of its d (H + 1) harmonics, 250 a
+/// sample where the law is sampled, 1 MiB, and the pieces of the path of friction in a plane.
 fn need_of_a_force(contact: &Contact, harmonics: usize, samples: usize) -> Result<usize> {
     let directions = contact.directions();
     let (own, of_path) = match contact.law(1.0)?.form() {
@@ -75,8 +75,8 @@ fn need_of_a_residual(model: &Model, solver: &SolverOptions) -> Result<usize> {
     Ok(contacts.fold(matrices, usize::saturating_add))
 }
 
-/// Refuses the evaluation of a law that needs more than 500 MB beside what the Jacobian of the caller asks for, or more than
-/// 16 GiB with that.
+/// Refuses the evaluation of a law that needs more than 500 MB beyond the Jacobian that the caller requests, or more
+/// than 16 GiB in all.
 pub fn allow_law(contact: &Contact, harmonics: usize, samples: usize, jacobian: bool) -> Result<()> {
     let directions = contact.directions();
     let with_jacobian = need_of_a_law(harmonics, directions, samples);

@@ -39,7 +39,7 @@ pub fn forced_residual(
 
 pub use crate::at_a_point::residual_numbering::ResidualArrays;
 
-/// The same as [`forced_residual`], and the caller may stop it: the arrays are then untouched or NaN.
+/// Residual as [`forced_residual`], and the caller may stop it: the arrays are then untouched or NaN.
 ///
 /// # Errors
 /// As [`forced_residual`]; `StoppedByCaller`.
@@ -133,7 +133,7 @@ fn forced_residual_of_independent(
     assembled
 }
 
-/// Fills the arrays with the sum of all terms.
+/// Fills the arrays with the sum of the terms of structure, contacts and forces.
 fn assemble(
     (model, at_frequency, omega): (&Model, &Model, f64),
     (dynamic, contact): (&[Dynamic], &ContactTerms),
@@ -198,7 +198,7 @@ fn check_len(name: &str, len: usize, needed: usize) -> Result<()> {
     fail!(Dimension, "{name} has {len} entries, needs {needed}")
 }
 
-/// Adds the complex factor v as a 2 × 2 block; for the mean only its real row and column.
+/// Adds the complex factor v to a real matrix as a 2 × 2 block; for the mean only its real row and column.
 fn add_block(j: &mut [f64], order: usize, row: usize, column: usize, v: Complex64, mean: bool) {
     j[2 * column * order + 2 * row] += v.re;
     if !mean {
@@ -208,14 +208,14 @@ fn add_block(j: &mut [f64], order: usize, row: usize, column: usize, v: Complex6
     }
 }
 
-/// Z_h and ∂Z_h/∂ω.
+/// Dynamic stiffness Z_h and its derivative ∂Z_h/∂ω.
 struct Dynamic {
     z: Csc,
     slope: Csc,
 }
 
 impl Dynamic {
-    /// `at` is the model at the frequency, whose damping has ΩG and whose stiffness Ω²K₁.
+    /// Makes Z_h; `at` is the model at the frequency, whose damping contains ΩG and whose stiffness Ω²K₁.
     fn new(model: &Model, at: &Model, h: usize, omega: f64) -> Result<Self> {
         let structure = at.structure();
         let n = structure.ndof();
@@ -253,7 +253,7 @@ impl Dynamic {
 /// Forces and Jacobians of all contacts at a motion.
 struct ContactTerms {
     set: HarmonicSet,
-    /// Per contact the rows of its directions, harmonic after harmonic, and its evaluation.
+    /// Per contact: rows of its directions, harmonic after harmonic; and evaluation of its law.
     terms: Vec<(Vec<Vec<Row>>, Evaluation)>,
 }
 
@@ -307,7 +307,7 @@ impl ContactTerms {
         Ok(Self { set, terms })
     }
 
-    /// Adds Wᴴ f and Wᴴ (∂f/∂y) W, and Wᴴ ∂f/∂ω.
+    /// Adds Wᴴ f to the residual, Wᴴ (∂f/∂y) W to the Jacobian, and Wᴴ ∂f/∂ω to the derivative.
     fn add(
         &self,
         n: usize,
@@ -346,7 +346,7 @@ impl ContactTerms {
         Ok(())
     }
 
-    /// Adds rᴴ f of one direction.
+    /// Adds the force rᴴ f of one direction to the residual.
     fn add_force(&self, rows: &[Row], packed: &[f64], n: usize, r: &mut [Complex64]) {
         for (h, row) in rows.iter().enumerate() {
             let f = self.set.get(packed, h);
@@ -358,7 +358,7 @@ impl ContactTerms {
     }
 }
 
-/// ∂f/∂y of one direction of force by one direction of motion, within the Jacobian of a law.
+/// Derivative ∂f/∂y of one direction of force by one direction of motion, as a block within the Jacobian of a law.
 struct Block<'a> {
     set: &'a HarmonicSet,
     jacobian: &'a [f64],
@@ -368,7 +368,7 @@ struct Block<'a> {
 }
 
 impl Block<'_> {
-    /// The harmonic h of the force in one packed column.
+    /// Harmonic h of the force in one column of the block.
     fn get(&self, column: usize, h: usize) -> Complex64 {
         let begin = (self.motion + column) * self.order + self.force;
         self.set.get(&self.jacobian[begin..begin + self.set.packed_len()], h)
@@ -430,7 +430,7 @@ fn evaluate(
     Ok(evaluation)
 }
 
-/// Force coefficients of one law on prescribed relative motions with harmonics 0 ..= `harmonics`, and their real
+/// Force harmonics of one law on prescribed relative motions with harmonics 0 ..= `harmonics`, and their real
 /// Jacobian over the pairs (Re, Im), column-major of order 2(H + 1)·d; `motion` and `force` are d × (H + 1),
 /// direction after direction. `samples` = 0 locates events exactly if the law has events. `omega` affects laws that
 /// depend on velocity. The imaginary part of the mean has no effect and no force.
@@ -450,7 +450,7 @@ pub fn contact_evaluate(
     contact_evaluate_with(contact, at, motion, force, jacobian, &Interrupt::none())
 }
 
-/// The same as [`contact_evaluate`], and the caller may stop it; arrays are untouched then.
+/// Evaluates a law as [`contact_evaluate`], and the caller may stop it; arrays are then untouched.
 ///
 /// # Errors
 /// As [`contact_evaluate`]; `StoppedByCaller`.

@@ -44,7 +44,8 @@ impl Numbering {
         }))
     }
 
-    /// Evaluates the residual of the independent degrees of freedom by `evaluate`, and writes that of all.
+    /// Evaluates the residual of the independent degrees of freedom by `evaluate`, and writes the residual of all
+    /// degrees of freedom.
     ///
     /// # Errors
     /// Those of `evaluate`, which leaves the arrays of the caller untouched.
@@ -100,7 +101,7 @@ impl Numbering {
     }
 }
 
-/// Adds the rows x − T q of the degrees of freedom that are not independent.
+/// Adds the rows x − T q of the dependent degrees of freedom to the Jacobian.
 fn impose(model: &Model, given: usize, j: &mut [f64], order: usize) {
     let degrees = model.structure().degrees();
     for h in 0..order / 2 / given {

@@ -6,8 +6,9 @@ use crate::interrupt::Interrupt;
 use crate::options::{Measure, Response};
 use num_complex::Complex64;
 
-/// The response of a motion of `ndof` degrees of freedom at `omega`; `x` has its harmonics 0 … H, (H + 1) × ndof numbers,
-/// harmonic by harmonic. The fundamental is harmonic 1. A sector other than 0 is refused: the motion is that of one sector.
+/// Reads a response of a motion of `ndof` degrees of freedom at `omega`; `x` has its harmonics 0 … H, (H + 1) × ndof
+/// numbers, harmonic by harmonic. The fundamental is harmonic 1. Sectors other than 0 are refused, since the motion
+/// is that of one sector.
 ///
 /// # Errors
 /// `Dimension`, `Argument`, `NotFinite` or those of [`Response::check`]; `OutOfMemory`.

@@ -11,7 +11,7 @@ use crate::sensitivity::{
 
 const CONTEXT: &str = "the sensitivities";
 
-/// A result of a branch at a stored point.
+/// Result at a stored point that is differentiated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Amplitude of a forced response at a fixed frequency.
@@ -20,27 +20,28 @@ pub enum Quantity {
     PeakAmplitude,
     /// Angular frequency of a peak.
     PeakOmega,
-    /// A response that was asked for, at a fixed frequency or at a peak of it, which moves with the parameters.
+    /// A requested response with this index, at a fixed frequency or at one of its peaks, which moves with the
+    /// parameters.
     Response(usize),
-    /// Angular frequency of a peak of a response.
+    /// Angular frequency of a peak of the response with this index.
     ResponsePeakOmega(usize),
     /// Angular frequency of a nonlinear mode at a fixed amplitude.
     ModeOmega,
-    /// Damping ratio of a nonlinear mode at a fixed amplitude; at its maximum also the derivative of that.
+    /// Damping ratio of a nonlinear mode at a fixed amplitude; at its maximum also the derivative of the maximum.
     ModeDamping,
 }
 
-/// Derivatives by parameters, in their order.
+/// Derivatives of a result by parameters, in their order.
 #[derive(Clone, Debug)]
 pub struct Sensitivities {
-    /// The derivatives; NaN where there is none.
+    /// Derivative by each parameter; NaN where it does not exist.
     pub values: Vec<f64>,
-    /// The reasons of NaN.
+    /// Reason of each derivative that is NaN.
     pub reasons: Vec<Reason>,
 }
 
-/// Derivatives of a result at a stored point of a branch by parameters of the model, which must be that of the
-/// computation of the branch.
+/// Derivatives of a result at a stored point of a branch by parameters of the model, which must be the one with which
+/// the branch was computed.
 ///
 /// One adjoint solution gives the derivatives by all parameters; the frequency of a peak takes five. They are exact for
 /// the harmonics of the point: those of the contact forces follow from the exact events of their evaluation.
@@ -58,7 +59,7 @@ pub fn sensitivity(
     sensitivity_with(model, branch, point, parameters, of, &Interrupt::none())
 }
 
-/// The same as [`sensitivity`], and the caller may stop it.
+/// Computes derivatives as [`sensitivity`], and the caller may stop it.
 ///
 /// # Errors
 /// As [`sensitivity`]; `StoppedByCaller`.

@@ -2,7 +2,7 @@
 
 #![allow(non_camel_case_types)]
 
-use super::last_error::LAST;
+use super::crossing::last_error::LAST;
 use crate::error::Status;
 use core::ffi::{CStr, c_char};
 
@@ -210,7 +210,7 @@ pub unsafe extern "C" fn hbvib_last_error_copy(buffer: *mut c_char, len: usize) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::capi::boundary::remember;
+    use crate::capi::crossing::boundary::remember;
 
     #[test]
     fn the_copy_of_an_error_is_cut_between_characters() {

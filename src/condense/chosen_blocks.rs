@@ -23,15 +23,15 @@ const TUNED_FROM: usize = 200;
 /// Kind: tuned; measured on: a wheel of 1,080, whose factors take 60 ms.
 const FACTORED_AT_ONE_UP_TO: usize = 2_000;
 
-/// The blocks with what belongs to their way.
+/// The blocks, with the data of the chosen flexibility: basis, tuned wheel or all degrees of freedom.
 pub(super) struct Chosen {
     pub blocks: Vec<HarmonicBlock>,
-    /// Estimated relative error of bases; 0 without.
+    /// Estimated relative error of the bases; 0 without bases.
     pub certificate: f64,
     pub tuned: Option<Arc<TunedPlan>>,
 }
 
-/// The blocks of all carried harmonics, with the artificial damping of a mode, if it is one.
+/// The blocks of all carried harmonics, with artificial damping if the problem is a nonlinear mode.
 ///
 /// # Errors
 /// `Unsupported` where a basis was requested for a structure without one; `OutOfMemory`; `StoppedByCaller`.
@@ -65,8 +65,8 @@ pub(super) fn chosen_blocks(
     })
 }
 
-/// The blocks of a wheel that is tuned but for terms of low rank, where this takes less time than factors or modes of all of it; `None` for
-/// others.
+/// The blocks of a wheel that is tuned but for terms of low rank, where these take less time than factors or modes of
+/// the whole wheel; else `None`.
 fn tuned_blocks(
     request: &Request<'_>,
     kappa: impl Fn(usize, usize) -> Complex64,
@@ -88,17 +88,18 @@ fn tuned_blocks(
     Ok(is_quicker.then(|| (blocks, Arc::new(plan))))
 }
 
-/// Whether a wheel has so many degrees of freedom that sums over all of its modes are no alternative, or take longer: estimates of errors
-/// need many harmonics, and take the modes of small wheels. At a single frequency few factors are needed.
+/// Whether a wheel has so many degrees of freedom that sums over all its modes are impossible or slower. Estimates of
+/// errors need many harmonics, and take the modes of small wheels. At a single frequency few factors are needed.
 fn may_be_tuned(request: &Request<'_>) -> bool {
     let n = request.model.structure().ndof();
-    if !request.sweep.is_range() {
+    if request.sweep.is_single() {
         return n > FACTORED_AT_ONE_UP_TO;
     }
     n > ALL_UP_TO || (n >= TUNED_FROM && request.options.tolerance == 0.0)
 }
 
-/// The blocks of all carried harmonics on the degrees of freedom, with the artificial damping of a mode, if it is one.
+/// The blocks of all carried harmonics on all degrees of freedom, with artificial damping if the problem is a
+/// nonlinear mode.
 fn direct_blocks(
     request: &Request<'_>,
     mode: Option<DampingForm>,

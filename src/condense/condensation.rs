@@ -15,7 +15,6 @@ use crate::condense::blocks::flexibility_way::FlexibilityWay;
 use crate::condense::blocks::memory_limit::within_for_contacts;
 use crate::condense::blocks::reference_stiffness::{raise_for_springs, reference_stiffness, structural_stiffness};
 use crate::condense::blocks::relative_coordinates::{AssembledDirection, assign_coordinates, relative_share};
-use crate::condense::blocks::sweep::Sweep;
 use crate::condense::blocks::tied_load::TiedLoad;
 use crate::condense::by_factors::exchanged_motions::{check_rigid, select_exchanged};
 use crate::condense::by_factors::flexibility::Workspace;
@@ -28,6 +27,7 @@ use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 use crate::linalg::power_of_two;
 use crate::model::Model;
+use crate::options::Range;
 use crate::options::{Content, DampingForm, Exchanged, Flexibility, SolverOptions};
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -46,21 +46,21 @@ impl Condensed {
     pub fn new(
         model: &Model,
         options: &SolverOptions,
-        sweep: impl Into<Sweep>,
+        sweep: impl Into<Range>,
         interrupt: &Interrupt<'_>,
     ) -> Result<Self> {
         Self::with_reference(model, options, sweep, None, interrupt)
     }
 
-    /// The same with a given reference stiffness, if any. With [`Reference::Stuck`] the response with stuck contacts is
-    /// as accurate as without contacts, however small the damping.
+    /// Condenses a model as `new` does, with a given reference stiffness, if any. With [`Reference::Stuck`] the
+    /// response with stuck contacts is as accurate as without contacts, however small the damping.
     ///
     /// # Errors
     /// As [`Self::new`].
     pub fn with_reference(
         model: &Model,
         options: &SolverOptions,
-        sweep: impl Into<Sweep>,
+        sweep: impl Into<Range>,
         reference: Option<Reference>,
         interrupt: &Interrupt<'_>,
     ) -> Result<Self> {
@@ -106,7 +106,7 @@ impl Condensed {
         Ok(condensed)
     }
 
-    /// Attaches the modes or poles of its waves, where they have such: its flexibility is then a sum over them.
+    /// Attaches the modes or poles of each wave that has such: the flexibility is then a sum over them.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
@@ -173,7 +173,7 @@ impl Condensed {
         Ok(condensed)
     }
 
-    /// Adds the constant forces of a model, for the unit `length`.
+    /// Adds the constant forces of a model, scaled by the unit `length`.
     fn add_constant_forces(&mut self, model: &Model, length: f64) {
         for block in self.blocks.iter_mut().filter(|b| b.number == 0) {
             model.add_forces_to(0, 1.0 / length, &mut block.force);
@@ -214,7 +214,7 @@ impl Condensed {
         Ok((condensed, motion))
     }
 
-    /// A model without any harmonic, for the branch of a run that was stopped before the condensation.
+    /// An empty condensed model without harmonics, for the branch of a run that was stopped before the condensation.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -250,7 +250,7 @@ impl Condensed {
     pub(super) fn unscaled(
         model: &Model,
         options: &SolverOptions,
-        (forced, sweep): (&[usize], Sweep),
+        (forced, sweep): (&[usize], Range),
         (mode, reference): (Option<(DampingForm, &[Complex64])>, Option<Reference>),
         interrupt: &Interrupt<'_>,
     ) -> Result<(Self, Vec<AssembledDirection>)> {
@@ -384,7 +384,7 @@ impl Condensed {
     }
 }
 
-/// The harmonics in which forces act.
+/// Harmonics in which forces act, by their indices.
 pub(super) fn forced_harmonics(model: &Model, options: &SolverOptions) -> Result<Vec<usize>> {
     let mut forced = Vec::new();
     for force in model.acting_forces() {
@@ -399,7 +399,7 @@ pub(super) fn forced_harmonics(model: &Model, options: &SolverOptions) -> Result
     Ok(forced)
 }
 
-/// The carried harmonics with forces in some of them, and these contacts.
+/// The harmonics to carry, for forces in the harmonics `forced` and for the contacts `active`.
 pub(super) fn carried(
     model: &Model,
     options: &SolverOptions,
@@ -425,7 +425,7 @@ pub(super) fn carried(
     Ok(set)
 }
 
-/// The reference stiffness with which a forced response of so many unknowns is quicker.
+/// The reference stiffness with which a forced response of `unknowns` unknowns is quicker.
 pub(super) fn quicker_reference(model: &Model, unknowns: usize) -> Reference {
     if unknowns > STUCK_ABOVE && model.structure().is_damped() {
         Reference::Stuck

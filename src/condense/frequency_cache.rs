@@ -8,6 +8,7 @@ use crate::condense::by_modes::single_contact_lanes::SingleContactLanes;
 use crate::condense::{Condensed, FlexibilityWay};
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
+use crate::options::Range;
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -41,43 +42,43 @@ const EXCITED_ALONE_FROM: usize = 8;
 /// Kind: tuned; measured on: not recorded.
 const BEYOND_FACTORS: f64 = 10.0;
 
-/// Tables of all carried harmonics.
+/// Flexibility tables of all carried harmonics at one frequency.
 pub struct FrequencyCache {
     workspace: Workspace,
     current: Vec<Table>,
-    /// Per harmonic the table from modes, where it is used.
+    /// Per harmonic the table from modes or poles, where it is used.
     modal: Vec<Option<ModalTable>>,
-    /// Work space of all of them; where slopes along a motion follow, of each.
+    /// Work space of the tables from modes: one for all, or one for each where slopes along a motion follow.
     modal_work: Vec<ModalWork>,
-    /// The same tables of all harmonics at once, where each is from modes of a single contact.
+    /// Tables of all harmonics computed together, where each is from modes of a single contact.
     lanes: Option<SingleContactLanes>,
     /// Whether the tables from modes have slopes.
     modal_slopes: bool,
-    /// Whether a sweep uses other tables than those by factorisation.
+    /// Whether a sweep uses tables that are not made by factorisation.
     is_quicker: bool,
-    /// How the table of the lowest vibrating harmonic is made along it.
+    /// How the table of the lowest vibrating harmonic is made along a sweep, as reported to the caller.
     told: FlexibilityWay,
     /// Whether the structure is so stiff that factorisations lose the digits that sums have.
     is_stiff: bool,
-    /// Per harmonic, whether its table is made and depends on no frequency.
+    /// Per harmonic, whether its table is made and independent of the frequency.
     constant: Vec<bool>,
-    /// Per harmonic, whether its table lacks slopes, but for those of the response degree of freedom where it is by factorisation, and
+    /// Per harmonic, whether its table lacks slopes (a table by factorisation still has those of the response); and
     /// whether it is from modes.
     lacks_slopes: Vec<bool>,
     is_modal: Vec<bool>,
-    /// Frequency of the current tables, how they were made, and whether with the columns of the contacts.
+    /// Frequency of the current tables, how they were made, and whether they have the columns of the contacts.
     tabulated: Option<(f64, Way, bool)>,
     way: Way,
 }
 
-/// How tables are made.
+/// How tables are made at a frequency.
 #[derive(Clone, Copy, PartialEq)]
 enum Way {
-    /// From modes, where there are such.
+    /// From modes or poles where the harmonic has such.
     Quick,
-    /// By factorisation, without slopes if these are expensive.
+    /// By factorisation, without slopes where these are expensive.
     Pointwise,
-    /// By factorisation, with slopes.
+    /// By factorisation, with all slopes.
     Factorised,
 }
 
@@ -86,10 +87,9 @@ impl FrequencyCache {
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
-    pub fn new(condensed: &Condensed, response: usize, range: (f64, f64), interrupt: &Interrupt<'_>) -> Result<Self> {
+    pub fn new(condensed: &Condensed, response: usize, range: Range, interrupt: &Interrupt<'_>) -> Result<Self> {
         let coordinates = condensed.coordinates();
-        let (start, end) = range;
-        let sweep = start.to_bits() != end.to_bits();
+        let sweep = !range.is_single();
         let mut workspace = Workspace::new(condensed, Some(response))?;
         let mut tables = Vec::new();
         let (mut modal, mut constant) = (Vec::new(), Vec::new());
@@ -160,15 +160,14 @@ impl FrequencyCache {
         }
     }
 
-    /// Selects tables with slopes by factorisation from now on.
+    /// Selects tables by factorisation with all slopes from now on.
     pub fn set_factorised(&mut self, factorised: bool) {
         if self.is_quicker {
             self.way = if factorised { Way::Factorised } else { Way::Quick };
         }
     }
 
-    /// Makes tables of the harmonics from modes where they are given, without slopes, as exactly as an estimate of an error needs
-    /// them.
+    /// Uses the given tables from modes, without slopes, as exactly as an error estimate needs them.
     pub fn set_modes(&mut self, modal: Vec<Option<ModalTable>>) {
         self.modal = modal;
         self.lanes = None;
@@ -176,7 +175,7 @@ impl FrequencyCache {
         self.tabulated = None;
     }
 
-    /// Whether tables are made from modes for an estimate.
+    /// Whether tables are made from modes for an error estimate.
     pub fn has_modes(&self) -> bool {
         !self.modal_slopes
     }
@@ -191,13 +190,14 @@ impl FrequencyCache {
         self.lacks_slopes.contains(&true)
     }
 
-    /// Whether that of the i-th harmonic lacks those of the response too, which are then found along a motion with the others.
+    /// Whether the table of the i-th harmonic also lacks the slopes of the response, which are then found along a
+    /// motion with the others.
     pub fn lacks_slopes_of_response(&self, i: usize) -> bool {
         self.lacks_slopes[i] && self.is_modal[i]
     }
 
-    /// The derivative by the frequency of the motions of the i-th harmonic under contact forces that do not change, where its table
-    /// lacks slopes; the forces are those of [`Workspace::recover`].
+    /// Derivative by the frequency of the motions of the i-th harmonic under constant contact forces, where its table
+    /// lacks slopes. `contact_force` is as in [`Workspace::recover`].
     ///
     /// # Errors
     /// Those of [`Workspace::evaluate`].
@@ -220,13 +220,13 @@ impl FrequencyCache {
             .slope_along(condensed, (i, omega), contact_force, change, interrupt)
     }
 
-    /// Their frequency; `None` before the first ones.
+    /// Angular frequency of the current tables; `None` before the first ones.
     pub fn frequency(&self) -> Option<f64> {
         self.tabulated.map(|(omega, ..)| omega)
     }
 
-    /// Makes the tables at `omega`, unless they are current; without `contacts`, where no contact acts on the motion, the columns of
-    /// these may stay zero.
+    /// Makes the tables at `omega`, unless they are current. Without `contacts`, where no contact acts on the motion,
+    /// the columns of the contacts may stay zero.
     ///
     /// # Errors
     /// Those of [`Workspace::evaluate`].
@@ -299,13 +299,14 @@ impl FrequencyCache {
         Ok(())
     }
 
-    /// Whether tables are by factorisation where they may be sums. A large structure takes its sums where a small one is factorised: they
-    /// have as many digits, and cost less.
+    /// Whether tables are made by factorisation where sums are possible. A large structure takes sums where a small
+    /// one is factorised: they have as many digits, and cost less.
     fn takes_factors(&self, condensed: &Condensed) -> bool {
         self.modal_slopes && self.way != Way::Quick && condensed.ndof() <= FACTORISED_UP_TO && !self.is_stiff
     }
 
-    /// The tables with the column of the excitation alone: sums where they serve, else by factorisation.
+    /// Makes the tables with the column of the excitation alone: by sums where these are accurate, else by
+    /// factorisation.
     fn tabulate_excited(&mut self, condensed: &Condensed, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
         let exactly = self.takes_factors(condensed);
         for (i, table) in self.current.iter_mut().enumerate() {
@@ -327,15 +328,16 @@ impl FrequencyCache {
     }
 }
 
-/// The table of the i-th carried harmonic from the modes of its wave, where it has them and they agree with a factorisation
-/// at the ends of the range; at one, where an earlier harmonic of the wave has shown its modes to be right. With the error of these
-/// factorisations, as far as it had to be known.
+/// The table of the i-th carried harmonic from the modes of its wave, where these exist and agree with a
+/// factorisation at both ends of the range; at one end, where an earlier harmonic of the wave has agreed. Also
+/// returns the error of the factorisations, as far as it had to be computed.
 fn of_wave(
     (condensed, i, response): (&Condensed, usize, usize),
-    (start, end): (f64, f64),
+    range: Range,
     (waves, work, workspace): (&mut Vec<Arc<ModalRows>>, &mut ModalWork, &mut Workspace),
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<(ModalTable, f64)>> {
+    let Range { start, stop: end } = range;
     let Some(source) = &condensed.blocks()[i].source else {
         return Ok(None);
     };
@@ -356,12 +358,13 @@ fn of_wave(
     Ok(Some((modal, worst)))
 }
 
-/// Whether tables from modes have slopes along a motion alone.
+/// Whether tables from modes have slopes only along a motion.
 fn has_slopes_along(condensed: &Condensed) -> bool {
     !condensed.has_exchanges() && condensed.coordinates() > ALL_MODAL_SLOPES_UP_TO
 }
 
-/// Whether the slopes along a motion that a table from modes has at a frequency, evaluated last, are those of a factorisation.
+/// Whether the slopes along a motion of a table from modes, evaluated last, agree with those by factorisation at a
+/// frequency.
 fn agree_along(
     modal: &ModalTable,
     (condensed, i, omega): (&Condensed, usize, f64),
@@ -381,8 +384,8 @@ fn agree_along(
     Ok(worst_column(&by_modes, &exact, coordinates + 1).1 <= OF_SLOPES)
 }
 
-/// The error of a factorisation at a frequency, 0 where it need not be known; `None` where a table from modes does not agree with it, in
-/// its slope too where that is to be checked: then nothing more of it is.
+/// Error of a factorisation at a frequency, 0 where it need not be known. Returns `None` where a table from modes
+/// disagrees with the factorisation, or its slope does where that is to be checked; no further slope is checked then.
 fn agreement(
     modal: &ModalTable,
     (condensed, i, omega): (&Condensed, usize, f64),
@@ -435,7 +438,7 @@ fn agreement(
     Ok(Some(own))
 }
 
-/// The column of a table of so many rows with the largest relative deviation from that of another one, and the deviation.
+/// Index of the column with the largest relative deviation between two tables of `outputs` rows, and the deviation.
 fn worst_column(a: &[Complex64], b: &[Complex64], outputs: usize) -> (usize, f64) {
     let mut largest = (0, 0.0_f64);
     for (k, (a, b)) in a.chunks_exact(outputs).zip(b.chunks_exact(outputs)).enumerate() {

@@ -48,7 +48,7 @@ pub fn structure(sectors: usize, (alpha, beta): (f64, f64)) -> Model {
     model
 }
 
-/// The same with sliders, a stuck contact and a spring.
+/// Model of `structure` with sliders, a stuck contact and a spring.
 pub fn chain(sectors: usize, damping: (f64, f64)) -> Model {
     let mut model = structure(sectors, damping);
     model.add_contact(&Contact::jenkins(1, Some(4), 9.0, 0.3, 1.0)).unwrap();

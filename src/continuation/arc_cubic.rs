@@ -2,8 +2,8 @@
 
 use crate::continuation::{Metric, Point};
 
-/// Length of the arc of a circle over a chord, from the cosine of the angle between the directions at its ends: a resonance is
-/// nearly a circle, and a chord in its place costs most of the accuracy.
+/// Length of a circular arc over a chord, from the cosine of the angle between the directions at its ends. A
+/// resonance is nearly a circle, and its chord would cost most of the accuracy.
 pub(super) fn arc_length(chord: f64, cosine: f64) -> f64 {
     // Half the angle over its sine.
     let sine = (0.5 * (1.0 - cosine)).clamp(0.0, 1.0).sqrt();
@@ -21,7 +21,7 @@ pub struct Cubic<'p> {
 }
 
 impl<'p> Cubic<'p> {
-    /// The curve in a metric.
+    /// The cubic through two points, with lengths in the given metric.
     #[must_use]
     pub fn new(a: &'p Point, b: &'p Point, metric: Metric) -> Self {
         let chord = metric.distance(&a.v, &b.v);
@@ -35,7 +35,7 @@ impl<'p> Cubic<'p> {
         }
     }
 
-    /// Weights of a, b and of their tangents at s, and of their derivatives.
+    /// Weights of a, b and of their tangents at s; and the derivatives of these weights by s.
     fn weights(&self, s: f64) -> ([f64; 4], [f64; 4]) {
         let (ra, rb) = self.tangent_scales;
         let (s2, s3) = (s * s, s * s * s);
@@ -55,7 +55,7 @@ impl<'p> Cubic<'p> {
         )
     }
 
-    /// The point at s.
+    /// Writes the point at s to `v`.
     pub fn place(&self, s: f64, v: &mut [f64]) {
         let (w, _) = self.weights(s);
         let ends = self.a.v.iter().zip(&self.b.v);
@@ -66,7 +66,7 @@ impl<'p> Cubic<'p> {
         }
     }
 
-    /// The point at s, and the derivative by s.
+    /// Writes the point at s to `v`, and its derivative by s.
     pub fn at(&self, s: f64, v: &mut [f64], derivative: &mut [f64]) {
         self.place(s, v);
         let (_, d) = self.weights(s);

@@ -24,46 +24,57 @@ use num_complex::Complex64;
 pub enum Advance {
     /// The next point; `last` if it is the end of the range.
     Accepted {
-        /// The point.
+        /// The accepted point.
         point: Point,
         /// Whether the end of the range was reached.
         last: bool,
     },
-    /// The branch turned back and left the range at its start; the point lies outside.
+    /// The branch turned back and left the range at its start, to a point outside.
     LeftAtStart {
-        /// The point.
+        /// The first point outside the range.
         point: Point,
     },
     /// No further point was found.
     Stopped(Status),
 }
 
-/// A branch that is followed.
+/// Follows a branch from point to point.
 pub struct Continuation {
     settings: Settings,
     steps: StepControl,
     corrector: Corrector,
     history: History,
     current: Point,
-    /// Size of its unknowns, and length of its tangent in the metric of the last prediction.
+    /// Size of the unknowns at the current point; and length of its tangent, both in the metric of the last
+    /// prediction.
     size: f64,
     length: f64,
-    /// A point whose memory the next one takes.
-    unused: Option<Point>,
+    memory: StepMemory,
     /// Largest motion and amplitude so far.
     largest: (f64, f64),
-    /// Error of the prediction of the point accepted last.
+    /// Relative error of the prediction of the point accepted last.
     last_error: f64,
-    /// Points accepted last whose parameters differ by rounding.
+    /// Number of points accepted last whose parameters differ by rounding alone.
     stationary: usize,
+    surfaces: Surfaces,
+}
+
+/// Memory of steps.
+pub struct StepMemory {
+    /// A point whose memory the next one takes.
+    unused: Option<Point>,
     row: Vec<f64>,
     scratch: Vec<f64>,
-    /// Memory of the next prediction.
+    /// Memory for the next prediction.
     prediction: Vec<f64>,
+}
+
+/// Corners that are left along their surface.
+pub struct Surfaces {
     /// Whether corners are left that it reaches along their surface. Paths of homotopies end there, and so does a branch
     /// that meets the next one before its steps have grown again: one that goes to infinity would creep.
-    leaves_surfaces: bool,
-    left_surface: bool,
+    may_leave: bool,
+    left: bool,
 }
 
 const CONTEXT: &str = "the continuation";
@@ -122,9 +133,10 @@ const TINY: f64 = 1e-6;
 /// Kind: tuned; measured on: not recorded.
 const ARC_LENGTH_APPROACH: f64 = 0.5;
 
-/// Outcome of the corrected prediction of one step.
+/// Outcome of one step: prediction and correction.
 enum Attempt {
-    /// With the error of the prediction and the cosine of the angle between the tangents at its ends.
+    /// A point, with the error of its prediction and the cosine of the angle between the tangents at the ends of the
+    /// step.
     Good {
         point: Point,
         error: f64,
@@ -133,7 +145,7 @@ enum Attempt {
     Poor {
         error: f64,
     },
-    /// Beyond a resonance at this share of the step.
+    /// The step has passed a resonance as a whole, at this share of its length.
     Passed {
         share: f64,
     },
@@ -159,35 +171,39 @@ impl Continuation {
             largest: (norm(first.unknowns()), first.amplitude.norm()),
             history: History::new(n + 1)?,
             current: first,
-            unused: None,
+            memory: StepMemory {
+                unused: None,
+                row: try_vec(n + 1, 0.0, CONTEXT)?,
+                scratch: try_vec(n + 1, 0.0, CONTEXT)?,
+                prediction: Vec::new(),
+            },
             last_error: f64::INFINITY,
             stationary: 0,
-            row: try_vec(n + 1, 0.0, CONTEXT)?,
-            scratch: try_vec(n + 1, 0.0, CONTEXT)?,
-            prediction: Vec::new(),
-            leaves_surfaces: false,
-            left_surface: false,
+            surfaces: Surfaces {
+                may_leave: false,
+                left: false,
+            },
         })
     }
 
-    /// The same for a branch, which leaves corners that it reaches along their surface, too.
+    /// Also lets the branch leave corners that it reaches along the surface of an event.
     #[must_use]
     pub fn leaving_surfaces(mut self) -> Self {
-        self.leaves_surfaces = true;
+        self.surfaces.may_leave = true;
         self
     }
 
-    /// Continues from a point in place of the one accepted last, and from `previous` in place of the one before, both
-    /// in the unknowns of a problem that may have more or fewer of them.
+    /// Continues from `current` in place of the point accepted last, and from `previous` in place of the point
+    /// before, both in the unknowns of a problem that may have more or fewer of them.
     ///
     /// # Errors
     /// `OutOfMemory`.
     pub fn go_on_from(&mut self, previous: Option<Point>, current: Point) -> Result<()> {
         let n = current.v.len() - 1;
-        if n + 1 != self.row.len() {
+        if n + 1 != self.memory.row.len() {
             self.corrector = corrector(n, &self.settings)?;
-            self.row = try_vec(n + 1, 0.0, CONTEXT)?;
-            self.scratch = try_vec(n + 1, 0.0, CONTEXT)?;
+            self.memory.row = try_vec(n + 1, 0.0, CONTEXT)?;
+            self.memory.scratch = try_vec(n + 1, 0.0, CONTEXT)?;
         }
         self.note_size(&current);
         self.history = History::new(n + 1)?;
@@ -199,8 +215,8 @@ impl Continuation {
         Ok(())
     }
 
-    /// Continues from a point, of which the branch before is not used, by a first step that changes the parameter by
-    /// about `change` at most.
+    /// Continues from a point, without the branch before it, by a first step that changes the parameter by at most
+    /// about `change`.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -211,7 +227,7 @@ impl Continuation {
         Ok(())
     }
 
-    /// Shortens the next step where it would change the parameter by more than about `change`.
+    /// Shortens the next step such that it changes the parameter by at most about `change`.
     pub fn change_at_most(&mut self, change: f64) {
         let metric = self.metric();
         let tangent = &self.current.tangent;
@@ -225,7 +241,7 @@ impl Continuation {
         &self.current
     }
 
-    /// Newton steps of all points so far, of those that failed too.
+    /// Number of Newton steps over all points so far, failed ones included.
     #[must_use]
     pub fn steps_taken(&self) -> usize {
         self.corrector.steps_taken()
@@ -233,11 +249,11 @@ impl Continuation {
 
     /// Takes the memory of a point that is no longer used for the next one.
     pub fn recycle(&mut self, point: Point) {
-        self.prediction = point.v;
+        self.memory.prediction = point.v;
         self.corrector.recycle(point.tangent);
     }
 
-    /// The point before it.
+    /// The point accepted before the current one; `None` at the first point.
     #[must_use]
     pub fn previous(&self) -> Option<&Point> {
         self.history.previous()
@@ -253,7 +269,7 @@ impl Continuation {
             return Ok(Advance::Stopped(Status::StoppedStepTooSmall));
         }
         let metric = self.metric();
-        let n = self.row.len() - 1;
+        let n = self.memory.row.len() - 1;
         loop {
             let step = self.steps.step();
             let (v, amplitude) = self.predict(metric, step)?;
@@ -311,18 +327,18 @@ impl Continuation {
 
     fn accept(&mut self, point: Point, fixed: Option<f64>) -> Result<Advance> {
         self.note_size(&point);
-        self.left_surface &= point.step < GROWN;
+        self.surfaces.left &= point.step < GROWN;
         let change = (point.parameter() - self.current.parameter()).abs();
         self.stationary = if change <= ARC_LENGTH_ROUNDING * point.parameter().abs() && point.step > TINY {
             self.stationary + 1
         } else {
             0
         };
-        let next = match self.unused.take() {
+        let next = match self.memory.unused.take() {
             Some(old) => point.try_clone_into(old)?,
             None => point.try_clone()?,
         };
-        self.unused = self.history.push(core::mem::replace(&mut self.current, next));
+        self.memory.unused = self.history.push(core::mem::replace(&mut self.current, next));
         Ok(match fixed {
             Some(bound) if bound.to_bits() == self.settings.start.to_bits() => Advance::LeftAtStart { point },
             Some(_) => Advance::Accepted { point, last: true },
@@ -330,14 +346,14 @@ impl Continuation {
         })
     }
 
-    /// Takes the size of the point that becomes the current one.
+    /// Stores the size of the point that becomes the current one.
     fn note_size(&mut self, point: &Point) {
         self.size = norm(point.unknowns());
         self.largest.0 = self.largest.0.max(self.size);
         self.largest.1 = self.largest.1.max(point.amplitude.norm());
     }
 
-    /// Size below which motions no longer refine the metric.
+    /// Smallest size of the unknowns by which the metric is scaled: smaller motions do not refine it.
     fn least_size(&self) -> f64 {
         (FLOOR * self.largest.0).max(ROUNDING_OF_MOTION)
     }
@@ -347,23 +363,24 @@ impl Continuation {
         Metric::along(self.size.max(self.least_size()), &self.settings)
     }
 
-    /// Predicted point and amplitude a step ahead; the tangent is left as the row of the plane.
+    /// Predicts point and amplitude one step ahead. Leaves the tangent as the row that defines the plane of the
+    /// correction.
     fn predict(&mut self, metric: Metric, step: f64) -> Result<(Vec<f64>, Complex64)> {
-        self.length = metric.unit(&self.current.tangent, &mut self.row);
-        let mut v = core::mem::take(&mut self.prediction);
+        self.length = metric.unit(&self.current.tangent, &mut self.memory.row);
+        let mut v = core::mem::take(&mut self.memory.prediction);
         v.clear();
-        try_extend(&mut v, &self.row, CONTEXT)?;
+        try_extend(&mut v, &self.memory.row, CONTEXT)?;
         let is_smooth = self.is_smooth();
         let amplitude = self.history.predict(&self.current, metric, (step, is_smooth), &mut v);
         Ok((v, amplitude))
     }
 
-    /// Whether the branch is far better predicted than its steps, which the caller bounds, require.
+    /// Whether predictions are much better than the steps require, since the caller bounds these.
     fn is_smooth(&self) -> bool {
         self.last_error <= SMOOTH && self.steps.is_bounded_by_caller()
     }
 
-    /// The bound of the range that a parameter value lies beyond, and the share of the distance to it.
+    /// The bound of the range that the parameter value p exceeds, if any, and the share of the step up to it.
     fn overshoot(&self, p: f64) -> Option<(f64, f64)> {
         let here = self.current.parameter();
         let (start, end) = (self.settings.start, self.settings.end);
@@ -390,21 +407,21 @@ impl Continuation {
         interrupt: &Interrupt<'_>,
     ) -> Result<Attempt> {
         let n = v.len() - 1;
-        self.scratch.copy_from_slice(&v);
+        self.memory.scratch.copy_from_slice(&v);
         if keep_parameter {
-            self.row.fill(0.0);
-            self.row[n] = 1.0;
+            self.memory.row.fill(0.0);
+            self.memory.row[n] = 1.0;
         }
         self.corrector.set_may_foresee(self.is_smooth());
         let corrected = match self
             .corrector
-            .correct(problem, &mut v, &self.row, metric, false, interrupt)?
+            .correct(problem, &mut v, &self.memory.row, metric, false, interrupt)?
         {
             Outcome::Converged(corrected) => corrected,
             Outcome::Failed => return Ok(Attempt::Failed),
         };
         if keep_parameter {
-            v[n] = self.scratch[n];
+            v[n] = self.memory.scratch[n];
         }
         let mut point = Point::new(v, corrected, step);
         let here = &self.current;
@@ -424,11 +441,12 @@ impl Continuation {
         let back = cosine(along, chord, lengths.0) < STRAIGHT;
         let far = chord > 3.0 * step;
         let size = norm(point.unknowns());
-        let error = self.prediction_error(&self.scratch, (&point, size), amplitude);
+        let error = self.prediction_error(&self.memory.scratch, (&point, size), amplitude);
         // A smooth curve that another one crosses changes its sense, too, and a step over the crossing is well predicted.
         let crossed = self.steps.crosses_branches() && error <= CROSSED.0 && kept >= CROSSED.1;
         let jumped = jumped && !crossed;
-        self.history.judge(&self.scratch, &point, &self.row, metric);
+        self.history
+            .judge(&self.memory.scratch, &point, &self.memory.row, metric);
         if turned || jumped || back || far || point.skips_folds_from(here) {
             return Ok(Attempt::Failed);
         }
@@ -462,18 +480,18 @@ impl Continuation {
     }
 }
 
-/// Least cosine between two directions, a step apart, that are one line.
+/// Smallest cosine between two directions, one step apart, that count as one line.
 fn same_line(step: f64) -> f64 {
     (LINE * step).clamp(LINE_BOUNDS.0, LINE_BOUNDS.1).cos()
 }
 
-/// The corrector of the points of a branch.
+/// Makes the corrector for points of a branch with n unknowns.
 fn corrector(n: usize, settings: &Settings) -> Result<Corrector> {
     let tolerance = settings.steps.tolerance(settings.tolerance);
     Corrector::new(n, tolerance, settings.max_iterations)
 }
 
-/// No step is small enough: returns the failure of a callback, or stops without a known cause.
+/// Ends a branch when no step is small enough: with the error of a callback, or without a known cause.
 fn too_small(failure: Option<Error>) -> Result<Advance> {
     match failure {
         Some(e) if e.status == Status::Callback => Err(e),

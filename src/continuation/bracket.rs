@@ -13,11 +13,11 @@ const BRACKET_CLOSE: f64 = 1e-7;
 /// monotonic curve, else by halving (Chandrupatla, Adv. Eng. Software 28, 1997, doi:10.1016/S0965-9978(96)00051-8); first by
 /// the secant.
 pub struct Bracket {
-    /// The end found last, the other one, and the one that was replaced last, if there is one.
+    /// The end found last, the other end, and the end that was replaced last, if there is one; each with its value.
     last: (f64, f64),
     other: (f64, f64),
     before: Option<(f64, f64)>,
-    /// A better first place than that of the secant.
+    /// First position to try, if a better one than that of the secant is known.
     first: Option<f64>,
 }
 
@@ -32,7 +32,7 @@ impl Bracket {
         Self::between((0.0, low), (1.0, high))
     }
 
-    /// The arc between two places with their values.
+    /// A bracket between two positions, with their values.
     pub(super) fn between(low: (f64, f64), high: (f64, f64)) -> Self {
         Self {
             last: high,
@@ -42,7 +42,7 @@ impl Bracket {
         }
     }
 
-    /// Takes the first place from the quadratic on the whole arc with the values at its ends and with this integral.
+    /// Uses a first position from the quadratic on the whole arc that has the values at the ends and this integral.
     pub(super) fn with_integral(mut self, integral: f64) -> Self {
         let (a, b) = (self.other.1, self.last.1);
         let square = 3.0 * (a + b) - 6.0 * integral;
@@ -53,23 +53,25 @@ impl Bracket {
         self
     }
 
-    /// Its width.
+    /// Width of the bracket, as a share of the arc.
     pub fn width(&self) -> f64 {
         (self.last.0 - self.other.0).abs()
     }
 
-    /// The middle.
+    /// Middle of the bracket.
     pub(super) fn middle(&self) -> f64 {
         0.5 * (self.last.0 + self.other.0)
     }
 
-    /// Whether the guess follows from interpolation and is so close to the end found last that its own error, far below its
-    /// distance, is rounding. Beside a kink, where interpolation converges slowly, distances do not fall as fast.
+    /// Whether the guess follows from interpolation and is so close to the end found last that its own error, far
+    /// below this distance, is rounding. Beside a kink, where interpolation converges slowly, distances do not fall
+    /// as fast.
     pub fn is_last(&self) -> bool {
         self.is_last_within(BRACKET_CLOSE)
     }
 
-    /// The same for another distance, whose power 1.8 is the error that counts as rounding.
+    /// Whether the guess is close enough, as `is_last` tells, for the distance `close`, whose power 1.8 is the error
+    /// that counts as rounding.
     pub fn is_last_within(&self, close: f64) -> bool {
         let guess = self.guess();
         let distance = (guess - self.last.0).abs();
@@ -77,7 +79,7 @@ impl Bracket {
         guess.to_bits() != self.middle().to_bits() && distance < close && self.before.is_some_and(falls)
     }
 
-    /// The place where the root is expected.
+    /// Position where the root is expected, as a share of the arc.
     pub fn guess(&self) -> f64 {
         let ((a, fa), (b, fb)) = (self.last, self.other);
         if let (None, Some(first)) = (self.before, self.first) {
@@ -102,7 +104,7 @@ impl Bracket {
         }
     }
 
-    /// Takes the value at a place within, and returns the distance to the end that it replaces.
+    /// Takes the value f at position s within the bracket, and returns the distance to the end that it replaces.
     pub fn narrow(&mut self, s: f64, f: f64) -> f64 {
         let replaces_last = (f > 0.0) == (self.last.1 > 0.0);
         let (replaced, kept) = if replaces_last {

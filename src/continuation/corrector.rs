@@ -21,13 +21,13 @@ use num_complex::Complex64;
 /// Data of a converged correction.
 #[derive(Clone, Debug)]
 pub struct Corrected {
-    /// Newton iterations taken.
+    /// Number of Newton iterations taken.
     pub iterations: usize,
-    /// Residual relative to the problem's scale, before the last correction; or a bound of that behind it, where it foresees it.
+    /// Relative residual before the last correction; or a bound of the residual after it, where that was foreseen.
     pub residual: f64,
     /// Whether round-off stopped the residual above the requested tolerance.
     pub stalled: bool,
-    /// Observed amplitude.
+    /// Observed amplitude at the point.
     pub amplitude: Complex64,
     /// Derivative of the amplitude along the tangent.
     pub slope: Complex64,
@@ -40,20 +40,20 @@ pub struct Corrected {
 /// Outcome of a correction.
 #[derive(Debug)]
 pub enum Outcome {
-    /// It converged to a solution.
+    /// The correction converged to a solution.
     Converged(Corrected),
-    /// It found no solution.
+    /// The correction found no solution.
     Failed,
 }
 
-/// Origin of the stored factors.
+/// Which matrix the stored factors belong to.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Factors {
     /// No usable factors are stored.
     None,
-    /// The factors of the matrix of an earlier iteration.
+    /// Factors of the matrix of an earlier iteration.
     Earlier,
-    /// The factors of the current matrix.
+    /// Factors of the current matrix.
     Own,
 }
 
@@ -62,25 +62,35 @@ pub struct Corrector {
     at: Residual,
     system: AutomaticSystem,
     factors: Factors,
+    memory: StepMemory,
+    /// Points of the matrices that the linear system took over last, the newest first; NaN where they are not known.
+    matrices_at: [Vec<f64>; 3],
+    limits: Limits,
+    /// Newton steps taken so far, over all corrections.
+    steps_taken: usize,
+    failure: Option<Error>,
+    /// Whether a correction may end with the factors of the iteration before.
+    may_end_early: bool,
+    /// Contraction of the corrections before; and whether the next ones belong to the same smooth branch.
+    contraction: Contraction,
+    may_foresee: bool,
+}
+
+/// Memory of steps and tangents.
+pub struct StepMemory {
     step: Vec<f64>,
     trial: Vec<f64>,
     next: Vec<f64>,
     /// Memory of the next tangent.
     unused: Vec<f64>,
     change: Vec<f64>,
-    /// Points of the matrices that the linear system took over last, the newest first; NaN where they are not known.
-    matrices_at: [Vec<f64>; 3],
+}
+
+/// When a correction ends.
+pub struct Limits {
     tolerance: f64,
     min_iterations: usize,
     max_iterations: usize,
-    /// Newton steps taken so far, over all corrections.
-    steps_taken: usize,
-    failure: Option<Error>,
-    /// Whether a correction may end with the factors of the iteration before.
-    may_end_early: bool,
-    /// That of the corrections before, and whether those that follow are of the same smooth branch.
-    contraction: Contraction,
-    may_foresee: bool,
 }
 
 /// Relative size of a Newton step that is round-off: no further progress is possible.
@@ -116,15 +126,19 @@ impl Corrector {
             at: Residual::new(n)?,
             system: AutomaticSystem::new(n)?,
             factors: Factors::None,
-            step: point()?,
-            trial: point()?,
-            next: point()?,
-            unused: Vec::new(),
-            change: point()?,
+            memory: StepMemory {
+                step: point()?,
+                trial: point()?,
+                next: point()?,
+                unused: Vec::new(),
+                change: point()?,
+            },
             matrices_at: [point()?, point()?, point()?],
-            tolerance,
-            min_iterations: 0,
-            max_iterations,
+            limits: Limits {
+                tolerance,
+                min_iterations: 0,
+                max_iterations,
+            },
             steps_taken: 0,
             failure: None,
             may_end_early: true,
@@ -139,25 +153,25 @@ impl Corrector {
         self.steps_taken
     }
 
-    /// Counts the steps of another corrector, which prepared a correction of this one.
+    /// Adds the steps of another corrector, which prepared a correction of this one.
     pub fn count_steps(&mut self, of_other: usize) {
         self.steps_taken += of_other;
     }
 
-    /// Tells whether the next correction is of a smooth branch whose points were corrected before.
+    /// States whether the next correction belongs to a smooth branch whose points were corrected before.
     pub fn set_may_foresee(&mut self, may_foresee: bool) {
         self.may_foresee = may_foresee;
     }
 
-    /// Takes memory that is no longer used for the next tangent.
+    /// Takes over memory that is no longer used, for the next tangent.
     pub fn recycle(&mut self, unused: Vec<f64>) {
-        self.unused = unused;
+        self.memory.unused = unused;
     }
 
-    /// Sets the bounds of the number of Newton iterations, and returns those before.
+    /// Sets the least and the largest number of Newton iterations, and returns the former bounds.
     pub fn limit(&mut self, iterations: (usize, usize)) -> (usize, usize) {
-        let before = (self.min_iterations, self.max_iterations);
-        (self.min_iterations, self.max_iterations) = iterations;
+        let before = (self.limits.min_iterations, self.limits.max_iterations);
+        (self.limits.min_iterations, self.limits.max_iterations) = iterations;
         before
     }
 
@@ -208,10 +222,10 @@ impl Corrector {
         let mut damping = 1.0;
         let (mut last_size, mut last) = (f64::INFINITY, [f64::INFINITY; 2]);
         let n = v.len() - 1;
-        for iteration in 0..=self.max_iterations {
+        for iteration in 0..=self.limits.max_iterations {
             interrupt.check()?;
             let residual = self.relative_residual();
-            let is_last = iteration > self.min_iterations && residual <= self.attainable();
+            let is_last = iteration > self.limits.min_iterations && residual <= self.attainable();
             if is_last
                 && self.may_end_early
                 && self.ends_by_earlier_factors(problem, (v, last[1]), (metric, row), interrupt)?
@@ -228,17 +242,17 @@ impl Corrector {
                 return Ok(Outcome::Failed);
             }
             self.matrices_at[0].copy_from_slice(v);
-            let size = norm(&self.step);
+            let size = norm(&self.memory.step);
             if !size.is_finite() {
                 return Ok(Outcome::Failed);
             }
             let (length, motion) = (self.step_length(metric), norm(&v[..n]));
             // The metric does not measure that: its unit may be far above unknowns that were large elsewhere on the branch.
             let round_off = length <= CORRECTOR_ROUND_OFF * motion
-                && self.step[n].abs() * metric.p <= CORRECTOR_ROUND_OFF * (v[n].abs() + metric.p);
+                && self.memory.step[n].abs() * metric.p <= CORRECTOR_ROUND_OFF * (v[n].abs() + metric.p);
             let near = length <= NEAR * motion;
             let sizes = [residual, length / motion];
-            let foreseen = if iteration == 0 && residual > self.tolerance && !damped {
+            let foreseen = if iteration == 0 && residual > self.limits.tolerance && !damped {
                 self.foresee(problem, sizes)
             } else {
                 None
@@ -247,10 +261,10 @@ impl Corrector {
                 self.contraction.measure(last, sizes);
             }
             // A step that is round-off of all unknowns may still matter to the small motion of a stiff contact.
-            let shrinks = !damped && iteration < self.max_iterations && size < 0.5 * last_size;
+            let shrinks = !damped && iteration < self.limits.max_iterations && size < 0.5 * last_size;
             let met = residual <= self.attainable() || foreseen.is_some();
             let converged = (met && near) || (round_off && !shrinks);
-            if converged && iteration >= self.min_iterations {
+            if converged && iteration >= self.limits.min_iterations {
                 let slope = if iteration == 0 && !problem.has_kinks() {
                     self.slope_weights(metric, row)
                 } else {
@@ -265,7 +279,7 @@ impl Corrector {
             // iteration leaves a share of the residual, which near a singular matrix is a long step.
             let may_grow = !self.system.is_direct() || (self.at.rounding > 0.0 && near);
             let falls = may_grow && residual < 0.5 * last[0];
-            if iteration == self.max_iterations || (!damped && size > last_size && !falls) {
+            if iteration == self.limits.max_iterations || (!damped && size > last_size && !falls) {
                 break;
             }
             (last_size, last) = (size, sizes);
@@ -276,7 +290,7 @@ impl Corrector {
                     None => break,
                 }
             } else {
-                metric.add(v, 1.0, &self.step);
+                metric.add(v, 1.0, &self.memory.step);
                 if !self.evaluates(problem, v)? {
                     break;
                 }
@@ -285,7 +299,7 @@ impl Corrector {
         Ok(Outcome::Failed)
     }
 
-    /// Evaluates the problem at `v`, so that its queries refer to that point.
+    /// Evaluates the problem at `v`, so that its queries refer to this point.
     ///
     /// # Errors
     /// Those of the problem.
@@ -311,12 +325,12 @@ impl Corrector {
         if r == 0.0 { 0.0 } else { r / self.at.scale }
     }
 
-    /// The tolerance, or the residual that rounding leaves where that is larger.
+    /// Residual that can be reached: the tolerance, or rounding where that is larger.
     fn attainable(&self) -> f64 {
         if self.at.rounding > 0.0 {
-            self.tolerance.max(self.at.rounding / self.at.scale)
+            self.limits.tolerance.max(self.at.rounding / self.at.scale)
         } else {
-            self.tolerance
+            self.limits.tolerance
         }
     }
 
@@ -346,30 +360,30 @@ impl Corrector {
         Ok(factored)
     }
 
-    /// Length of the unknowns of the step.
+    /// Length of the step in the unknowns, without the parameter.
     fn step_length(&self, metric: Metric) -> f64 {
-        norm(&self.step[..self.step.len() - 1]) * metric.u
+        norm(&self.memory.step[..self.memory.step.len() - 1]) * metric.u
     }
 
-    /// Bound of the residual behind a first step of these sizes, where that leads to a solution.
+    /// Bound of the residual after a first step from these sizes, if it is known to lead to a solution.
     fn foresee(&mut self, problem: &mut dyn Problem, sizes: Sizes) -> Option<f64> {
         // Iterative solutions and near-rigid contacts leave other residuals, and sampled laws have other matrices everywhere.
         let is_smooth = self.may_foresee && self.system.is_direct() && !problem.has_kinks() && self.at.rounding == 0.0;
         is_smooth
-            .then(|| self.contraction.foresee(sizes, self.tolerance))
+            .then(|| self.contraction.foresee(sizes, self.limits.tolerance))
             .flatten()
     }
 
-    /// step = −(R, 0)
+    /// step ← −(R, 0).
     fn negate_residual(&mut self) {
-        let n = self.step.len() - 1;
-        for (s, r) in self.step.iter_mut().zip(&self.at.values) {
+        let n = self.memory.step.len() - 1;
+        for (s, r) in self.memory.step.iter_mut().zip(&self.at.values) {
             *s = -r;
         }
-        self.step[n] = 0.0;
+        self.memory.step[n] = 0.0;
     }
 
-    /// step = −[J r; row]⁻¹ (R, 0) in scaled unknowns; `false` where the matrix is singular. The factors of an
+    /// step ← −[J r; row]⁻¹ (R, 0) in scaled unknowns; `false` where the matrix is singular. The factors of an
     /// earlier iteration may be reused where the matrix has hardly changed.
     fn newton_step(
         &mut self,
@@ -385,8 +399,8 @@ impl Corrector {
         self.solve(problem, (metric, row), STEP_ERROR, interrupt)
     }
 
-    /// Solves for `step` with the current matrix, by factors of an earlier one to the given error; `false` where it
-    /// is singular. The problem is at the point of the matrix.
+    /// Solves for `step` with the current matrix, to a relative error that allows factors of an earlier one; `false`
+    /// where it is singular. The problem must have been evaluated at the point of the matrix.
     fn solve(
         &mut self,
         problem: &mut dyn Problem,
@@ -397,25 +411,25 @@ impl Corrector {
         if self.factors == Factors::Earlier
             && self
                 .system
-                .solve_by_earlier_factors(problem, error, &mut self.step, interrupt)?
+                .solve_by_earlier_factors(problem, error, &mut self.memory.step, interrupt)?
         {
             return Ok(true);
         }
         if self.factors != Factors::Own && !self.factor(problem, interrupt)? {
             return Ok(false);
         }
-        if self.system.solve(problem, error, &mut self.step, interrupt)? {
+        if self.system.solve(problem, error, &mut self.memory.step, interrupt)? {
             return Ok(true);
         }
         if !self.system.solve_directly() {
             return Ok(false);
         }
         self.update(problem, metric, row, interrupt)?;
-        Ok(self.factor(problem, interrupt)? && self.system.solve(problem, error, &mut self.step, interrupt)?)
+        Ok(self.factor(problem, interrupt)? && self.system.solve(problem, error, &mut self.memory.step, interrupt)?)
     }
 
-    /// Applies the last Newton step, in `step`, without another evaluation (its error is the square of a residual already
-    /// below the tolerance); the tangent is that in `next`.
+    /// Applies the last Newton step, in `step`, without another evaluation: the error is the square of a residual
+    /// already below the tolerance. The tangent is taken from `next`.
     fn finish(
         &mut self,
         problem: &mut dyn Problem,
@@ -424,13 +438,13 @@ impl Corrector {
         (iterations, residual): (usize, f64),
     ) -> Result<Outcome> {
         let n = v.len() - 1;
-        let mut tangent = core::mem::take(&mut self.unused);
+        let mut tangent = core::mem::take(&mut self.memory.unused);
         tangent.clear();
-        try_extend(&mut tangent, &self.step, "Newton's method")?;
+        try_extend(&mut tangent, &self.memory.step, "Newton's method")?;
         metric.unscale(&mut tangent);
         let (at_residual, mut correction) = problem.observe(&v[..n], &tangent);
-        if residual <= self.tolerance {
-            metric.add(v, 1.0, &self.step);
+        if residual <= self.limits.tolerance {
+            metric.add(v, 1.0, &self.memory.step);
         } else {
             correction = Complex64::ZERO;
         }
@@ -452,8 +466,8 @@ impl Corrector {
         }))
     }
 
-    /// The tangent of the current matrix in scaled numbers, of any length, in `next`; `false` where the matrix is singular. With
-    /// weights of `slope_weights` it is that behind the Newton step.
+    /// Computes the tangent of the current matrix in scaled numbers, of any length, into `next`; `false` where the
+    /// matrix is singular. With weights of `slope_weights` it is the tangent after the Newton step.
     fn solve_for_tangent(
         &mut self,
         problem: &mut dyn Problem,
@@ -461,28 +475,32 @@ impl Corrector {
         slope: Option<[f64; 3]>,
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
-        let n = self.step.len() - 1;
-        core::mem::swap(&mut self.step, &mut self.next);
-        if !slope.is_some_and(|slope| self.system.apply_last(slope.map(|w| -w), &self.next, &mut self.step)) {
-            self.step.fill(0.0);
+        let n = self.memory.step.len() - 1;
+        core::mem::swap(&mut self.memory.step, &mut self.memory.next);
+        if !slope.is_some_and(|slope| {
+            self.system
+                .apply_last(slope.map(|w| -w), &self.memory.next, &mut self.memory.step)
+        }) {
+            self.memory.step.fill(0.0);
         }
-        self.step[n] = 1.0;
+        self.memory.step[n] = 1.0;
         let solved = self.solve(problem, (metric, row), TANGENT_ERROR, interrupt);
-        core::mem::swap(&mut self.step, &mut self.next);
+        core::mem::swap(&mut self.memory.step, &mut self.memory.next);
         solved
     }
 
-    /// The unit tangent in unscaled numbers from the one in `next`.
+    /// Fills in the unit tangent, in unscaled numbers, from the one in `next`.
     fn unit_tangent(&self, metric: Metric, tangent: &mut [f64]) {
-        let inverse = 1.0 / norm(&self.next);
-        for (t, s) in tangent.iter_mut().zip(&self.next) {
+        let inverse = 1.0 / norm(&self.memory.next);
+        for (t, s) in tangent.iter_mut().zip(&self.memory.next) {
             *t = s * inverse;
         }
         metric.unscale(tangent);
     }
 
-    /// Direction in which the linearisation at `v` keeps the residual, solution or not: filled into `tangent`,
-    /// pointing along the row. Returns whether det [J r; tangentᵀ] is positive; `None` where the matrix is singular.
+    /// Fills `tangent` with the direction in which the linearisation at `v` keeps the residual, whether `v` is a
+    /// solution or not; it points along the row. Returns whether det [J r; tangentᵀ] is positive; `None` where the
+    /// matrix is singular.
     ///
     /// # Errors
     /// Those of the problem.

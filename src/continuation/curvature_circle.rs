@@ -15,27 +15,27 @@ use crate::continuation::{Metric, Point};
 /// Kind: rounding.
 const CURVATURE_CIRCLE_STRAIGHT: f64 = 1e-14;
 
-/// φ at a point, and the factor that makes its tangent the derivative by φ.
+/// Angle coordinate φ of a point; and the factor that turns its tangent into the derivative by φ.
 pub(super) type Place = (f64, f64);
 
-/// The circle through the newest point with its tangent and, about, the point before.
+/// Circle through the newest point with its tangent and, approximately, through the point before.
 #[derive(Clone, Copy)]
 pub(super) struct CurvatureCircle {
-    /// Factor that makes the tangent of the newest point one of unit length.
+    /// Factor that normalises the tangent of the newest point.
     unit: f64,
     metric: Metric,
     bend: Option<Bend>,
 }
 
-/// The plane of the circle, which the tangent of the point before spans, too.
+/// Plane of the circle, spanned by the tangents of the newest point and of the point before.
 #[derive(Clone, Copy)]
 struct Bend {
-    /// Factor that makes this one of unit length.
+    /// Factor that normalises the tangent of the point before.
     unit: f64,
-    /// Those of the angle between the tangents.
+    /// Cosine of the angle between the tangents, and curvature κ.
     cosine: f64,
     curvature: f64,
-    /// 1/κ, and κ over the sine of the angle.
+    /// Radius 1/κ, and κ over the sine of the angle between the tangents.
     radius: f64,
     across: f64,
 }
@@ -67,7 +67,8 @@ impl CurvatureCircle {
         circle
     }
 
-    /// The place of a point on the circle of these two; `None` where φ does not grow along it.
+    /// Coordinate of a point on this circle, which was made from the points `here` and `before`; `None` where φ does
+    /// not grow along it.
     pub fn place(&self, (here, before): (&Point, Option<&Point>), point: &Point) -> Option<Place> {
         let own = &here.tangent[..];
         let other = before.map_or(own, |before| &before.tangent);

@@ -37,14 +37,14 @@ const ROOT_HALVINGS: usize = 45;
 /// Kind: tuned; measured on: not recorded.
 const OF_DIFFERENCE: f64 = 1e-3;
 
-/// Weight of a value and of its derivative, each with its own derivative by the parameter.
+/// Weights of a value and of its derivative, each with its derivative by the parameter.
 #[derive(Clone, Copy)]
 struct Weights {
     value: (f64, f64),
     slope: (f64, f64),
 }
 
-/// Weights of the nodes at p.
+/// Weights of all nodes at the parameter p; `places` are the parameters of the nodes.
 fn weights(places: &[f64], p: f64, found: &mut [Weights]) {
     for (i, (&own, weights)) in places.iter().zip(found.iter_mut()).enumerate() {
         // l, dl/dp, and dl/dp at the node.
@@ -64,7 +64,7 @@ fn weights(places: &[f64], p: f64, found: &mut [Weights]) {
     }
 }
 
-/// The nodes next to a peak.
+/// Solutions next to a peak, used as nodes of the interpolation.
 struct Nodes<'p> {
     points: Vec<&'p Point>,
     places: Vec<f64>,
@@ -74,7 +74,7 @@ struct Nodes<'p> {
 }
 
 impl<'p> Nodes<'p> {
-    /// The nodes next to the middle of two that enclose a peak; `None` where the parameter does not go one way.
+    /// The nodes next to the two that enclose a peak; `None` where the parameter turns among them.
     fn new(all: &'p [Point], between: (usize, usize)) -> Result<Option<Self>> {
         let (mut first, mut end) = (between.0, between.1 + 1);
         while end - first < MOST_NODES.min(all.len()) {
@@ -116,7 +116,7 @@ impl<'p> Nodes<'p> {
         }))
     }
 
-    /// The derivative of half the square of the amplitude along the branch at p.
+    /// Half the derivative of the squared amplitude along the branch at the parameter p.
     fn growth(&mut self, p: f64) -> f64 {
         weights(&self.places, p, &mut self.weights);
         let (mut z, mut dz) = (Complex64::ZERO, Complex64::ZERO);
@@ -128,7 +128,7 @@ impl<'p> Nodes<'p> {
         self.sense * (z.conj() * dz).re
     }
 
-    /// The root of the growth within a range in which it falls through zero.
+    /// Root of the growth within a range in which it falls through zero.
     fn root(&mut self, (mut low, mut high): (f64, f64)) -> f64 {
         let (mut at_low, mut at_high) = (self.growth(low), self.growth(high));
         for i in 0..ROOT_HALVINGS {
@@ -152,7 +152,7 @@ impl<'p> Nodes<'p> {
         0.5 * (low + high)
     }
 
-    /// The interpolated solution at p.
+    /// Interpolated unknowns and parameter at p.
     fn solution(&mut self, p: f64) -> Result<Vec<f64>> {
         weights(&self.places, p, &mut self.weights);
         let n = self.points[0].v.len();
@@ -169,8 +169,8 @@ impl<'p> Nodes<'p> {
 }
 
 impl Locator {
-    /// The peak between the neighbours `between` of `nodes`, solutions in the order of the branch as the response sees them, to which
-    /// those that are sought are added; `None` where interpolation does not lead to it.
+    /// The peak between the neighbours `between` of `nodes`; `None` where interpolation does not lead to it. `nodes`
+    /// are solutions in the order of the branch, as the response sees them; further solutions are added to them.
     ///
     /// # Errors
     /// Those of the problem; `StoppedByCaller`.
@@ -220,7 +220,7 @@ impl Locator {
         Ok(None)
     }
 
-    /// The solution at the parameter of a guess, along the direction of a neighbour.
+    /// Solves at the parameter of the guess `v`, along the direction of a neighbour.
     fn solved_at(
         &mut self,
         problem: &mut dyn Problem,

@@ -20,15 +20,15 @@ const FEW_POINTS: usize = 3;
 
 const CONTEXT: &str = "the continuation";
 
-/// Points before the current one.
+/// Points before the current one, and the choice of the number of points for a prediction.
 pub(super) struct History {
-    /// The newest one first.
+    /// Points before the current one, the newest first.
     before: Vec<Point>,
-    /// Number of points, the current one among them, from which predictions are made at most.
+    /// Largest number of points, the current one included, from which predictions are made.
     most: usize,
     /// Number of points of the last prediction.
     count: usize,
-    /// Prediction from one point fewer or one more, and their number; empty where there is none.
+    /// Alternative prediction from one point fewer or one more, and its number of points; empty where there is none.
     other: Vec<f64>,
     other_count: usize,
     /// Whether the last prediction was a solution, so that fewer points need not be tried.
@@ -36,12 +36,13 @@ pub(super) struct History {
     places: Places,
 }
 
-/// Places of the current point and of those before it by one circle of curvature, which serves for a few points.
+/// Positions of the current point and of those before it along one circle of curvature, which is used for a few
+/// points.
 struct Places {
-    /// The newest one first; none where there is no circle.
+    /// Position of each point, the newest first; `None` where there is no circle.
     found: [Option<Place>; MOST_POINTS],
     circle: Option<CurvatureCircle>,
-    /// Points since its newest one; whether the current one has a place.
+    /// Number of points since the one for which the circle was made; and whether the current point has a position.
     age: usize,
     is_current: bool,
 }
@@ -58,7 +59,7 @@ impl Places {
         is_current: false,
     };
 
-    /// Adds a point, whose place is found later.
+    /// Adds a point, whose position is computed later.
     fn push(&mut self) {
         self.circle = self.circle.filter(|_| self.is_current && self.age + 1 < MOST_PLACED);
         self.age += 1;
@@ -66,7 +67,7 @@ impl Places {
         self.found.rotate_right(1);
     }
 
-    /// Finds the places that are missing.
+    /// Computes the missing positions.
     fn complete(&mut self, here: &Point, before: &[Point], metric: Metric) {
         if self.is_current {
             return;
@@ -89,7 +90,7 @@ impl Places {
 }
 
 impl History {
-    /// No points; memory for vectors of `length` numbers.
+    /// A history without points, with memory for vectors of `length` numbers.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -117,7 +118,7 @@ impl History {
         self.before.first()
     }
 
-    /// Adds the point that was the current one; returns one that is no longer used.
+    /// Adds the point that was the current one; returns the point that drops out, if any.
     pub fn push(&mut self, point: Point) -> Option<Point> {
         let oldest = if self.before.len() + 1 < MOST_POINTS {
             None
@@ -129,12 +130,13 @@ impl History {
         oldest
     }
 
-    /// The power of the step with which the error of the last prediction grows.
+    /// Order of the last prediction: the power of the step with which its error grows.
     pub fn order(&self) -> f64 {
         2.0 * self.count as f64
     }
 
-    /// Predicts the branch a step beyond `here`, from more than three points if it `is_smooth`; returns the amplitude there.
+    /// Predicts the branch one step beyond `here`, from more than three points if it `is_smooth`; returns the
+    /// predicted amplitude.
     pub fn predict(
         &mut self,
         here: &Point,
@@ -174,8 +176,8 @@ impl History {
         predictor.amplitude(&weights)
     }
 
-    /// Selects the number of points of the next prediction, where the last one was `predicted` and led to `point` across the unit
-    /// vector `row`.
+    /// Selects the number of points for the next prediction. The last one was `predicted` and led to `point`; errors
+    /// are measured across the unit vector `row`.
     pub fn judge(&mut self, predicted: &[f64], point: &Point, row: &[f64], metric: Metric) {
         self.is_met = point.iterations == 0;
         if self.other.is_empty() {
@@ -188,7 +190,7 @@ impl History {
     }
 }
 
-/// Fills in a prediction, for which there is memory.
+/// Writes a prediction to `v`, whose memory suffices.
 fn fill(predictor: &Predictor<'_>, weights: &Weights, v: &mut Vec<f64>, length: usize) {
     v.resize(length, 0.0);
     predictor.place(weights, v);

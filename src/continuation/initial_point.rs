@@ -14,10 +14,10 @@ use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::problem::{InitialGuess, Problem};
 
-/// A first point.
+/// The first point of a branch, and how it was found.
 #[derive(Debug)]
 pub struct First {
-    /// The point.
+    /// The solved first point.
     pub point: Point,
     /// The method that found it.
     pub way: Way,
@@ -28,18 +28,18 @@ pub struct First {
 pub enum Way {
     /// Newton's method from an initial guess of the problem.
     Newton(InitialGuess),
-    /// The problem's homotopy.
+    /// The homotopy that the problem itself provides.
     Homotopy,
-    /// The homotopy from an anchor.
+    /// A Newton homotopy from an anchor.
     Anchor,
-    /// The branch itself, from another parameter.
+    /// Continuation of the branch from another parameter value.
     Branch,
     /// Newton's method from a solution with fewer harmonics.
     Transferred,
 }
 
 impl Way {
-    /// Its sentence in a log.
+    /// Sentence of this method for a log.
     #[must_use]
     pub const fn sentence(self) -> &'static str {
         match self {
@@ -59,9 +59,9 @@ const CONTEXT: &str = "the start";
 /// Bounds of the work for a first point.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// Most points of a homotopy.
+    /// Largest number of points of a homotopy.
     pub points: usize,
-    /// Newton iterations after which no homotopy is followed any more.
+    /// Number of Newton iterations after which no further homotopy is followed.
     pub iterations: usize,
 }
 
@@ -79,7 +79,8 @@ const PROGRESS: f64 = 1e-3;
 /// Kind: tuned; measured on: not recorded.
 const LONG_STEP: f64 = 0.1;
 
-/// Solves for the first point at `settings.start`. Its iterations are those of all attempts, homotopies included.
+/// Solves for the first point at `settings.start`. The reported iterations are those of all attempts, homotopies
+/// included.
 ///
 /// # Errors
 /// `NoConvergence` if every method failed, or the failure of a law if that was the cause; `Singular` if the linear
@@ -88,7 +89,7 @@ pub fn solve(problem: &mut dyn Problem, settings: &Settings, interrupt: &Interru
     solve_within(problem, settings, FULL, interrupt)
 }
 
-/// The same with bounded work.
+/// Solves for the first point as `solve` does, with bounded work.
 ///
 /// # Errors
 /// Those of [`solve`].
@@ -161,7 +162,7 @@ fn try_each_way(
     )
 }
 
-/// The outcome of an attempt; `failed` if another motion may avoid its error, which is stored.
+/// The value of an attempt; `failed` if another motion may avoid its error, which is then stored.
 fn attempt<T>(outcome: Result<T>, failed: T, failure: &mut Option<Error>) -> Result<T> {
     match outcome {
         Err(e) if e.recoverable => {
@@ -172,7 +173,7 @@ fn attempt<T>(outcome: Result<T>, failed: T, failure: &mut Option<Error>) -> Res
     }
 }
 
-/// Damped Newton at the fixed parameter in `v`.
+/// Solves by damped Newton steps at the fixed parameter in `v`.
 fn at_fixed(
     problem: &mut dyn Problem,
     settings: &Settings,
@@ -211,7 +212,7 @@ fn homotopy(
     finish(problem, settings, v, Way::Homotopy, corrector, interrupt)
 }
 
-/// Newton's method on the problem itself from the end of a homotopy.
+/// Solves the problem itself by Newton's method from the end of a homotopy.
 fn finish(
     problem: &mut dyn Problem,
     settings: &Settings,
@@ -234,7 +235,7 @@ fn finish(
     })
 }
 
-/// Anchors: initial guesses, each with a factor.
+/// Anchors of homotopies: initial guesses, each with a factor.
 const ANCHORS: [(InitialGuess, f64); 3] = [
     (InitialGuess::Reference, 1.0),
     (InitialGuess::Stuck, 1.0),
@@ -284,16 +285,16 @@ fn try_anchors(
     Ok(None)
 }
 
-/// End of a homotopy path.
+/// Where a homotopy path stopped.
 enum Reached {
-    /// The end of the homotopy.
+    /// The end of the homotopy, with the unknowns of its solution.
     End(Vec<f64>),
-    /// A part of it; the point nearest to the end.
+    /// A point before the end; the one nearest to it.
     Part(Vec<f64>),
     Nothing,
 }
 
-/// Follows a homotopy with bounded work, of which so many points may make no progress.
+/// Follows a homotopy with bounded work; at most `patience` successive points may make no progress.
 fn follow(
     problem: &mut dyn Problem,
     (settings, (effort, patience)): (&Settings, (Effort, usize)),

@@ -17,7 +17,7 @@ pub struct Metric {
 }
 
 impl Metric {
-    /// Norm of a vector (u, p).
+    /// Norm of a vector (u, p) in scaled numbers.
     #[must_use]
     pub fn norm(self, v: &[f64]) -> f64 {
         let (u, p) = v.split_at(v.len() - 1);
@@ -31,7 +31,7 @@ impl Metric {
         }
     }
 
-    /// Distance of two points.
+    /// Distance of two points in scaled numbers.
     #[must_use]
     pub fn distance(self, a: &[f64], b: &[f64]) -> f64 {
         let n = a.len() - 1;
@@ -40,14 +40,14 @@ impl Metric {
         (squares.sum::<f64>() / (self.u * self.u) + along * along).sqrt()
     }
 
-    /// Inner product.
+    /// Inner product of two vectors in scaled numbers.
     #[must_use]
     pub fn dot(self, a: &[f64], b: &[f64]) -> f64 {
         let n = a.len() - 1;
         dot(&a[..n], &b[..n]) / (self.u * self.u) + a[n] * b[n] / (self.p * self.p)
     }
 
-    /// Inner products with two vectors: of the way from `here` to `v`, and of a tangent.
+    /// Inner products of two `vectors` with the way from `here` to `v` and with a tangent.
     #[must_use]
     pub fn products(self, here: &[f64], (v, tangent): (&[f64], &[f64]), vectors: [&[f64]; 2]) -> [[f64; 2]; 2] {
         let n = here.len() - 1;
@@ -84,7 +84,7 @@ impl Metric {
         sums
     }
 
-    /// Square of the distance of two points without its part along a scaled unit vector.
+    /// Squared distance of two points without its part along the scaled unit vector `row`.
     #[must_use]
     pub fn square_across(self, a: &[f64], b: &[f64], row: &[f64]) -> f64 {
         let n = row.len() - 1;
@@ -99,7 +99,7 @@ impl Metric {
         square / (self.u * self.u) + of_parameter * of_parameter - along * along
     }
 
-    /// Length of the way between two points along a scaled unit vector.
+    /// Distance from one point to another along the scaled unit vector `row`.
     #[must_use]
     pub fn along_row(self, from: &[f64], to: &[f64], row: &[f64]) -> f64 {
         let n = row.len() - 1;
@@ -108,7 +108,7 @@ impl Metric {
         along / self.u + (to[n] - from[n]) / self.p * row[n]
     }
 
-    /// v += factor·step, the step in scaled unknowns.
+    /// v ← v + factor·step, the step being given in scaled unknowns.
     pub fn add(self, v: &mut [f64], factor: f64, step: &[f64]) {
         let n = v.len() - 1;
         for (v, s) in v[..n].iter_mut().zip(step) {
@@ -126,7 +126,7 @@ impl Metric {
         v[n] *= self.p;
     }
 
-    /// Turns a direction in unscaled numbers into a scaled vector of length 1; returns the length that it had.
+    /// Turns a direction in unscaled numbers into a scaled vector of length 1; returns its former length.
     pub fn unit(self, direction: &[f64], row: &mut [f64]) -> f64 {
         let n = row.len() - 1;
         let length = self.norm(direction);

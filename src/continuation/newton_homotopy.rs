@@ -22,7 +22,7 @@ pub struct NewtonHomotopy<'a> {
     problem: &'a mut dyn Problem,
     parameter: f64,
     anchor: Vec<f64>,
-    /// λ of the point last evaluated.
+    /// Parameter λ of the point last evaluated.
     share: f64,
 }
 
@@ -75,7 +75,7 @@ impl Problem for NewtonHomotopy<'_> {
         Ok(())
     }
 
-    /// Zero: only the end of the path matters.
+    /// Observes zero: only the end of the path matters.
     fn observe(&self, _u: &[f64], _direction: &[f64]) -> (Complex64, Complex64) {
         (Complex64::ZERO, Complex64::ZERO)
     }

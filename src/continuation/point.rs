@@ -9,25 +9,25 @@ use num_complex::Complex64;
 /// Kind: rounding.
 const POINT_ROUND_OFF: f64 = 1e-10;
 
-/// A point with the number of its resolution.
+/// A point with the index of its resolution.
 pub type PointAt<'p> = (&'p Point, usize);
 
-/// A point of a branch.
+/// A solved point of a branch with its tangent.
 #[derive(Clone, Debug)]
 pub struct Point {
-    /// Unknowns and parameter.
+    /// Unknowns and parameter (u, p).
     pub v: Vec<f64>,
     /// Direction of the branch, in the sense in which it is followed.
     pub tangent: Vec<f64>,
-    /// Observed amplitude.
+    /// Observed complex amplitude.
     pub amplitude: Complex64,
-    /// Its derivative along the tangent.
+    /// Derivative of the amplitude along the tangent.
     pub slope: Complex64,
-    /// Relative residual.
+    /// Relative residual of the point.
     pub residual: f64,
-    /// Newton iterations.
+    /// Number of Newton iterations that the point took.
     pub iterations: usize,
-    /// Arc length of the step.
+    /// Arc length of the step to the point.
     pub step: f64,
     /// Whether round-off stopped the residual above the tolerance.
     pub stalled: bool,
@@ -36,7 +36,7 @@ pub struct Point {
 }
 
 impl Point {
-    /// A corrected point, its tangent pointing as found.
+    /// A corrected point with the tangent as it was found.
     #[must_use]
     pub fn new(v: Vec<f64>, corrected: Corrected, step: f64) -> Self {
         Self {
@@ -80,13 +80,13 @@ impl Point {
         })
     }
 
-    /// The parameter.
+    /// The parameter p.
     #[must_use]
     pub fn parameter(&self) -> f64 {
         self.v[self.v.len() - 1]
     }
 
-    /// The unknowns.
+    /// The unknowns u.
     #[must_use]
     pub fn unknowns(&self) -> &[f64] {
         &self.v[..self.v.len() - 1]
@@ -114,7 +114,7 @@ impl Point {
             && against(&before.tangent)
     }
 
-    /// The same point, followed in the other sense.
+    /// Turns the tangent round: the point is then followed in the other sense.
     pub fn reverse(&mut self) {
         for t in &mut self.tangent {
             *t = -*t;

@@ -16,16 +16,16 @@ use num_complex::Complex64;
 /// Kind: tuned; measured on: not recorded.
 pub const MOST_POINTS: usize = 5;
 
-/// The last points of a branch with their places along it, that of the newest one 0.
+/// The last points of a branch with their positions along it, counted from the newest one.
 pub struct Predictor<'p> {
-    /// The newest one first.
+    /// The points, the newest first.
     points: [&'p Point; MOST_POINTS],
     places: [f64; MOST_POINTS],
-    /// 1/(t_i − t_j)
+    /// Reciprocals 1/(t_i − t_j) of the distances between the points.
     inverses: [[f64; MOST_POINTS]; MOST_POINTS],
-    /// Factors that turn the stored tangents into derivatives by the parameter.
+    /// Factors that turn the stored tangents into derivatives by the parameter t.
     scales: [f64; MOST_POINTS],
-    /// Derivative of the parameter by the length at the newest point.
+    /// Derivative of the parameter t by the arc length at the newest point.
     per_length: f64,
     count: usize,
 }
@@ -38,8 +38,8 @@ pub struct Weights {
 }
 
 impl<'p> Predictor<'p> {
-    /// The point `here` and those before it, the newest one first, with their places by a circle of curvature, up to one that
-    /// coincides with its neighbour or lies in another direction.
+    /// The point `here` and the points before it, the newest first, positioned by a circle of curvature. It ends
+    /// before a point that coincides with its neighbour or lies in another direction.
     pub fn by_circle(here: &'p Point, before: &'p [Point], places: &[Option<Place>], metric: Metric) -> Self {
         let [Some((newest, scale)), others @ ..] = places else {
             return Self::alone(here, 1.0 / metric.norm(&here.tangent));
@@ -55,7 +55,8 @@ impl<'p> Predictor<'p> {
         predictor
     }
 
-    /// The same with places by arc length, each arc taken for that of a circle: enough for a few points, and quick.
+    /// The point `here` and the points before it, positioned by arc length, each arc taken as circular: quick, and
+    /// enough for a few points.
     pub fn by_arcs(here: &'p Point, before: &'p [Point], metric: Metric) -> Self {
         let mut predictor = Self::alone(here, 1.0 / metric.norm(&here.tangent));
         for point in before.iter().take(MOST_POINTS - 1) {
@@ -71,7 +72,7 @@ impl<'p> Predictor<'p> {
         predictor
     }
 
-    /// The point `here` alone, whose tangent becomes the derivative by this factor.
+    /// The point `here` alone; `scale` turns its tangent into the derivative.
     fn alone(here: &'p Point, scale: f64) -> Self {
         Self {
             points: [here; MOST_POINTS],
@@ -83,7 +84,7 @@ impl<'p> Predictor<'p> {
         }
     }
 
-    /// Adds the point before those that it has; `false` where it does not lie before them.
+    /// Adds a point before the others; `false` where its position does not lie before them.
     fn add(&mut self, point: &'p Point, place: f64, scale: f64) -> bool {
         let count = self.count;
         if place.is_nan() || place >= self.places[count - 1] {
@@ -99,13 +100,13 @@ impl<'p> Predictor<'p> {
         true
     }
 
-    /// Number of points.
+    /// Number of points used.
     #[must_use]
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// The weights a step beyond the newest point, from the newest `count` points.
+    /// Weights of the newest `count` points for a prediction one step beyond the newest one.
     #[must_use]
     pub fn weights(&self, step: f64, count: usize) -> Weights {
         let t = step * self.per_length;
@@ -130,7 +131,7 @@ impl<'p> Predictor<'p> {
         }
     }
 
-    /// The branch there.
+    /// Writes the predicted point (u, p) to `v`.
     pub fn place(&self, weights: &Weights, v: &mut [f64]) {
         let here = self.points[0];
         // The sum is centred on the newest point, so that round-off stays relative to the distance.
@@ -146,7 +147,7 @@ impl<'p> Predictor<'p> {
         }
     }
 
-    /// The observed amplitude there.
+    /// The predicted amplitude.
     #[must_use]
     pub fn amplitude(&self, weights: &Weights) -> Complex64 {
         let here = self.points[0];

@@ -3,7 +3,7 @@
 use super::*;
 use crate::continuation::curvature_circle::CurvatureCircle;
 
-/// A point of a curve, whose stored tangent has the length of the derivative.
+/// A point of a curve whose stored tangent has the length of the derivative.
 fn point(v: [f64; 3], tangent: [f64; 3]) -> Point {
     Point {
         v: v.to_vec(),
@@ -40,7 +40,7 @@ fn on_curve(t: f64) -> Point {
     )
 }
 
-/// Distance of the curve from its prediction a step beyond 0.4, from points at uneven distances.
+/// Distance between the curve and its prediction one step beyond 0.4, from points at uneven distances.
 fn error(curve: fn(f64) -> Point, step: f64, count: usize) -> f64 {
     let metric = Metric { u: 1.0, p: 1.0 };
     let here = curve(0.4);

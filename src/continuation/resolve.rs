@@ -15,8 +15,8 @@ const RESOLVE_NEAR: f64 = 0.3;
 /// Kind: tuned; measured on: not recorded.
 const PARALLEL: f64 = 0.99;
 
-/// Solves from `near`, at its parameter or in the plane across its tangent. The found point is followed in the sense of
-/// `near`, see `in_sense_of`. `None` where Newton's method fails or converges to another solution.
+/// Solves again from `near`, at its parameter or in the plane across its tangent. The found point is followed in the
+/// sense of `near`, see `in_sense_of`. `None` where Newton's method fails or converges to another solution.
 ///
 /// # Errors
 /// Those of the problem; `StoppedByCaller`.

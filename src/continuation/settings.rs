@@ -9,10 +9,10 @@ pub struct Settings {
     pub start: f64,
     /// End of the parameter range.
     pub end: f64,
-    /// Requested relative residual.
+    /// Relative residual at which a point counts as solved.
     pub tolerance: f64,
     /// Maximum number of Newton iterations.
     pub max_iterations: usize,
-    /// Steps.
+    /// Control of the step length.
     pub steps: StepControl,
 }

@@ -13,17 +13,17 @@ use crate::problem::Problem;
 /// Special points that are searched for between two points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpecialPoint {
-    /// The parameter turns: the tangent has no component along it.
+    /// A fold: the parameter turns, so that the tangent has no component along it.
     Fold,
-    /// The observed amplitude is largest: d|z|/ds = 0, falling after.
+    /// A peak: the observed amplitude is largest, d|z|/ds = 0, falling after.
     Peak,
-    /// The observed amplitude, a real number, has this value.
+    /// A level: the observed amplitude, a real number, has this value.
     Level(f64),
 }
 
 impl SpecialPoint {
-    /// The function whose root is the special point: the derivative of the parameter or of the amplitude along the
-    /// tangent, over a `length` of the tangent, or the amplitude above a level.
+    /// The function whose root is the special point. For a fold or a peak it is the derivative of the parameter or of
+    /// the amplitude along the tangent, per `length` of the tangent; for a level, the amplitude minus the level.
     #[must_use]
     pub fn function(self, point: &Point, length: f64) -> f64 {
         match self {
@@ -41,7 +41,7 @@ impl SpecialPoint {
         }
     }
 
-    /// The integral of the function from one point to the next, if it is known.
+    /// Integral of the function from one point to the next, if it is known.
     fn integral(self, a: &Point, b: &Point) -> Option<f64> {
         match self {
             Self::Fold => Some(b.parameter() - a.parameter()),
@@ -68,10 +68,10 @@ pub struct Locator {
     settings: Settings,
     pub(super) row: Vec<f64>,
     derivative: Vec<f64>,
-    /// Place of the solution found last on the same arc, and its departure from the cubic; empty: none.
+    /// Position of the last solution on the same arc, and its distance from the cubic; empty if there is none.
     departed_at: f64,
     departure: Vec<f64>,
-    /// The further response that amplitudes are of; `None`: the observed one.
+    /// Further response from which amplitudes are taken; `None`: the observed one.
     response: Option<usize>,
 }
 
@@ -112,15 +112,15 @@ impl Locator {
         })
     }
 
-    /// Sees points as a further response of the problem.
+    /// Takes amplitudes from a further response of the problem; `None`: from the observed one.
     #[must_use]
     pub fn with_response(mut self, response: Option<usize>) -> Self {
         self.response = response;
         self
     }
 
-    /// Whether the next place is the last one. That of a further response, of which there may be many, errs by 1e-9 of the arc,
-    /// and its amplitude by the square.
+    /// Whether the next position is the last one. For a further response, of which there may be many, it may be in
+    /// error by 1e-9 of the arc, and the amplitude by the square.
     fn is_last(&self, bracket: &Bracket) -> bool {
         if self.response.is_some() {
             bracket.is_last_within(CLOSE_FOR_RESPONSES)
@@ -156,8 +156,8 @@ impl Locator {
         Ok(found)
     }
 
-    /// The same on an arc that is longer by `margin` at an end near the root: ends that are not exact may lie on the other
-    /// side of it. Returns also whether the function vanishes there.
+    /// Searches for the special point on an arc that is extended by `margin` at an end near the root, since inexact
+    /// ends may lie on its other side. Also returns whether the function vanishes at the point found.
     fn search(
         &mut self,
         problem: &mut dyn Problem,
@@ -335,7 +335,7 @@ impl Locator {
         Ok(Some(point))
     }
 
-    /// Reads a solved point as the response sees it.
+    /// Replaces the amplitude of a solved point by that of the further response.
     pub(super) fn see(&self, problem: &mut dyn Problem, point: &mut Point) -> Result<()> {
         if let Some(response) = self.response
             && let Some((amplitude, slope)) = problem.see(response, &point.v, &point.tangent)?

@@ -2,12 +2,13 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-/// Purpose of the points of a branch.
+/// Purpose of the points of a branch, which decides their spacing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detail {
-    /// A curve that is drawn.
+    /// A curve for plots.
     Curve,
-    /// Special points alone. They are solved for between the points of the branch, which need not draw it.
+    /// Special points alone. They are solved for between the points of the branch, which need not be close enough for
+    /// a plot.
     SpecialPoints,
 }
 
@@ -29,7 +30,7 @@ impl Detail {
         }
     }
 
-    /// The largest step.
+    /// Largest step by default, in scaled unknowns.
     fn largest_step(self) -> f64 {
         match self {
             Self::Curve => 0.04,
@@ -74,7 +75,7 @@ impl StepControl {
         Self::with_detail(first, min, max, Detail::Curve)
     }
 
-    /// The same for another purpose.
+    /// Steps as `new` makes them, for a given purpose.
     #[must_use]
     pub fn with_detail(first: f64, min: f64, max: f64, detail: Detail) -> Self {
         let has_bound = max > 0.0;
@@ -91,7 +92,7 @@ impl StepControl {
         }
     }
 
-    /// The same for a curve that goes straight on where another one crosses it.
+    /// Lets a curve go straight on where another one crosses it.
     #[must_use]
     pub fn crossing_branches(mut self) -> Self {
         self.crosses = true;
@@ -104,7 +105,7 @@ impl StepControl {
         self.crosses
     }
 
-    /// Relative residual to which the points are solved, where `requested` is that of exact ones.
+    /// Relative residual to which the points are solved; `requested` is the value for exact points.
     #[must_use]
     pub fn tolerance(&self, requested: f64) -> f64 {
         match self.detail {
@@ -113,8 +114,8 @@ impl StepControl {
         }
     }
 
-    /// Shares of a step by which a point that is not exact may seem to lie on the other side of a special point, one tried after
-    /// the other.
+    /// Shares of a step, to be tried in this order, by which an inexact point may lie on the wrong side of a special
+    /// point.
     #[must_use]
     pub fn margins(&self) -> &'static [f64] {
         match self.detail {
@@ -123,25 +124,25 @@ impl StepControl {
         }
     }
 
-    /// The step to try.
+    /// The step to try, in scaled unknowns.
     #[must_use]
     pub fn step(&self) -> f64 {
         self.step
     }
 
-    /// The smallest step.
+    /// The smallest step allowed.
     #[must_use]
     pub fn smallest(&self) -> f64 {
         self.min
     }
 
-    /// The largest step.
+    /// The largest step allowed.
     #[must_use]
     pub fn largest(&self) -> f64 {
         self.max
     }
 
-    /// The largest step that the caller gave.
+    /// The largest step that the caller gave; `None` if it gave none.
     #[must_use]
     pub fn bound(&self) -> Option<f64> {
         self.has_bound.then_some(self.max)
@@ -160,7 +161,7 @@ impl StepControl {
         }
     }
 
-    /// Whether a predictor error can be accepted.
+    /// Whether a prediction with this relative error can be accepted.
     #[must_use]
     pub fn accepts(&self, error: f64) -> bool {
         error <= self.detail.largest_error() || self.step <= 2.0 * self.min
@@ -181,7 +182,8 @@ impl StepControl {
         self.step = (used * factor).clamp(self.min, self.max);
     }
 
-    /// Shortens the next step so that the branch, which turned by an angle of this cosine over a length, keeps its direction, about.
+    /// Shortens the next step so that the branch turns little: over the last step, of this length, it turned by the
+    /// angle with this cosine.
     pub fn keep_direction(&mut self, cosine: f64, length: f64) {
         let allowed = MOST_TURN * length / self.step;
         // An angle is at most π/2 times its chord.
@@ -190,7 +192,7 @@ impl StepControl {
         }
     }
 
-    /// Continues with a step of another length.
+    /// Continues with the given step.
     pub fn restart(&mut self, step: f64) {
         self.step = step.clamp(self.min, self.max);
     }

@@ -33,17 +33,18 @@ const CONTROLLER_ROUND_OFF: f64 = 1e-13;
 /// Kind: tuned; measured on: not recorded.
 const BACKTRACK: usize = 3;
 
-/// A point with the harmonics that its error requires, at the current resolution.
+/// A point with the harmonics that its error requires, in the current resolution.
 pub(crate) struct Refined {
     pub point: Point,
-    /// Whether it misses the tolerance and was not found with more harmonics, although more are available.
+    /// Whether the point misses the tolerance and no solution was found with more harmonics, although more are
+    /// available.
     pub stuck: bool,
 }
 
 /// Selects the harmonics of each point of a branch: collects the signs, asks [`decide`], and carries out the answer.
 pub(crate) struct AdaptivityController {
     tolerance: f64,
-    /// Number of estimates that were more than a check of contacts that stick.
+    /// Number of estimates so far, cheap checks that all contacts stick not counted.
     estimates: usize,
     /// Error of the last point that met the tolerance, and the harmonics that it requires.
     last: Option<(f64, usize)>,
@@ -63,7 +64,7 @@ impl AdaptivityController {
         }
     }
 
-    /// Number of estimates made.
+    /// Number of estimates made so far.
     pub fn estimates(&self) -> usize {
         self.estimates
     }
@@ -75,7 +76,7 @@ impl AdaptivityController {
         }
     }
 
-    /// The signs of a point of an error, NaN where it is unknown, that requires harmonics up to one.
+    /// Signs of a point with an error (NaN where unknown) that requires the harmonics up to `required`.
     fn signs(&self, equations: &dyn Discretised, occasion: Occasion, (error, required): (f64, usize)) -> Signs {
         let (levels, level) = (equations.levels(), equations.resolution());
         let half = levels.level_of_half(self.history.highest());
@@ -97,7 +98,7 @@ impl AdaptivityController {
         }
     }
 
-    /// The decision after an estimate.
+    /// The action to take after an estimate.
     fn decide_by(
         &self,
         equations: &dyn Discretised,
@@ -116,13 +117,13 @@ impl AdaptivityController {
         ESTIMATE_MARGIN * error <= self.tolerance
     }
 
-    /// Counts an estimate.
+    /// Adds an estimate to the count, unless it was a cheap check.
     fn count(&mut self, found: &Assessment) {
         self.estimates += usize::from(!found.estimate.certified || found.estimate.steps > 0);
     }
 
-    /// The first point of a curve, where something is nonlinear, with the fewest harmonics that the curve has there: with
-    /// fewer its error would be estimated to no avail.
+    /// The first point of a curve where something is nonlinear, with at least the fewest harmonics that such a curve
+    /// carries: with fewer, an error estimate would tell nothing.
     pub fn begin_curve(
         &mut self,
         equations: &mut dyn Discretised,
@@ -144,8 +145,8 @@ impl AdaptivityController {
         Ok(better)
     }
 
-    /// The point with the harmonics that its error requires. If it misses the tolerance at the last refinement, it is
-    /// returned all the same.
+    /// The point with the harmonics that its error requires. If it misses the tolerance after the last refinement, it
+    /// is returned as it is.
     pub fn refine(
         &mut self,
         equations: &mut dyn Discretised,
@@ -229,7 +230,8 @@ impl AdaptivityController {
         Ok(found)
     }
 
-    /// Whether the error of a point is predicted by that of an earlier one; it is then taken over.
+    /// Whether the error of a point is predicted from that of an earlier one; if so, the point takes over that
+    /// estimate.
     fn is_predicted(&mut self, equations: &mut dyn Discretised, point: &Point, trend: Trend) -> Result<bool> {
         self.spacing.note_step(point.step);
         let largest = self.tolerance / ESTIMATE_MARGIN;
@@ -252,7 +254,7 @@ impl AdaptivityController {
         ESTIMATE_MARGIN * change <= self.tolerance * after.amplitude.norm()
     }
 
-    /// The point from which the next one was not found, with more harmonics; `None` if that is not found either.
+    /// The last point, from which no next one was found, solved with more harmonics; `None` if that fails too.
     pub fn backtrack(
         equations: &mut dyn Discretised,
         (point, level): PointAt<'_>,
@@ -288,7 +290,7 @@ impl AdaptivityController {
         Ok(false)
     }
 
-    /// The point recorded last with the harmonics with which the branch continues: resolved if they change.
+    /// The point recorded last, with the harmonics with which the branch continues: solved again if they change.
     pub fn adjust(
         &mut self,
         equations: &mut dyn Discretised,

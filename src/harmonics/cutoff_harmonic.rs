@@ -16,7 +16,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::dense::eigen;
 use crate::linalg::factors::lu::Lu;
 use crate::linalg::inner;
-use nalgebra::DMatrix;
+use crate::linalg::libraries::DMatrix;
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -57,7 +57,7 @@ pub(crate) fn affordable(condensed: &Condensed, unknowns: usize) -> usize {
     set.base() * (1 + pairs.saturating_sub(1) * set.stride()) * usize::from(pairs > 0)
 }
 
-/// Harmonics that a condensed model must carry so that the waves of all higher ones are among its own.
+/// Number of harmonics that a condensed model must carry so that the waves of all higher harmonics are among its own.
 pub(super) fn all_waves(condensed: &Condensed) -> usize {
     if condensed.ndof() > CUTOFF_HARMONIC_SMALL_UP_TO {
         return 0;
@@ -72,10 +72,10 @@ pub(super) struct CutoffHarmonic {
     workspace: Workspace,
     /// Highest natural frequency of the structure without its contacts, where it is known.
     highest: Option<f64>,
-    /// Frequency of the last cut-off, the angular frequency at which it was found, and the harmonic the search began
-    /// from.
+    /// Last cut-off found: as a frequency, the angular frequency of the point, and the harmonic from which the search
+    /// began.
     found: Option<(f64, f64, usize)>,
-    /// The same where the structure was compliant in the highest harmonic of the search.
+    /// Last search that found the structure compliant up to its highest harmonic, with numbers as in `found`.
     beyond: Option<(f64, f64, usize)>,
     matrix: Vec<Complex64>,
     vectors: [Vec<Complex64>; 2],
@@ -101,7 +101,8 @@ impl CutoffHarmonic {
         })
     }
 
-    /// The same without a bound, where it follows from the last one.
+    /// The cut-off harmonic where it follows from the last one found, without a search and its upper bound; else
+    /// `None`.
     pub fn known(&self, omega: f64, from: usize) -> Option<usize> {
         let found = self.found.filter(|found| self.serves(*found, omega, from));
         found.map(|(frequency, ..)| (frequency / omega).round() as usize)
@@ -133,7 +134,7 @@ impl CutoffHarmonic {
         Ok(last)
     }
 
-    /// Whether what was found at a frequency serves at another one.
+    /// Whether a cut-off found at one frequency is valid at another one.
     fn serves(&self, (_, near, searched_from): (f64, f64, usize), omega: f64, from: usize) -> bool {
         // Where all harmonics are one wave, G depends on hω alone.
         let one_wave = self.condensed.in_step() <= 1;
@@ -209,7 +210,7 @@ impl CutoffHarmonic {
         Ok(from)
     }
 
-    /// Whether ‖kt^½ G kt^½‖ ≥ ½ in harmonic h.
+    /// Whether the structure is compliant in harmonic h: ‖kt^½ G kt^½‖ ≥ ½.
     fn compliant(&mut self, omega: f64, h: usize, interrupt: &Interrupt<'_>) -> Result<bool> {
         interrupt.check()?;
         let condensed = &self.condensed;
@@ -246,7 +247,7 @@ impl CutoffHarmonic {
     }
 }
 
-/// A carried harmonic on the same wave as h, or on the nearest carried one.
+/// Index of a carried harmonic on the wave of harmonic h, or on the nearest carried wave.
 fn block_of(condensed: &Condensed, h: usize) -> Option<usize> {
     let numbers = condensed.set().numbers();
     let period = condensed.in_step().max(1);
@@ -322,13 +323,13 @@ pub(super) fn least_extension(set: &HarmonicSet) -> usize {
     carried_from(set, second.max(2 * own + 1))
 }
 
-/// The lowest harmonic number not below h that sets like `set` carry.
+/// The lowest harmonic not below h that sets like `set` carry.
 pub(super) fn carried_from(set: &HarmonicSet, h: usize) -> usize {
     let (base, step) = (set.base(), set.base() * set.stride());
     base + h.saturating_sub(base).div_ceil(step) * step
 }
 
-/// The highest such number not above h, at least the base.
+/// The highest harmonic not above h that sets like `set` carry, at least the base.
 fn carried_to(set: &HarmonicSet, h: usize) -> usize {
     let (base, step) = (set.base(), set.base() * set.stride());
     base + h.saturating_sub(base) / step * step

@@ -43,12 +43,12 @@ const LOW: usize = 2;
 /// Kind: cap.
 pub(super) const MOST_REFINEMENTS: usize = 12;
 
-/// The past of a branch, as far as it bears on the next decision.
+/// State of a branch: the part of its past that matters for the next decision.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum State {
     /// No nonlinear point met the tolerance yet: nothing has justified the harmonics.
     Fresh,
-    /// The harmonics follow from errors.
+    /// The harmonics follow from known errors.
     Settled,
     /// The harmonics were raised because an error was unknown.
     Unknown,
@@ -56,20 +56,20 @@ pub(crate) enum State {
     Folded,
 }
 
-/// Why a decision is asked for.
+/// The event after which a decision is needed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Occasion {
     /// A curve begins where something is nonlinear.
     Begins,
-    /// A point was solved; whether its error follows from that of an earlier one.
+    /// A point was solved. `predicted`: its error follows from that of an earlier point.
     Solved { predicted: bool },
     /// The error of a point was estimated.
     Estimated {
-        /// Whether the point missed the tolerance with fewer harmonics.
+        /// Whether the point missed the tolerance with fewer harmonics before.
         missed: bool,
-        /// Level from which the point was refined, where that changed nothing.
+        /// Level from which the point was refined, where the refinement changed nothing.
         unchanged_from: Option<usize>,
-        /// Number of refinements made.
+        /// Number of refinements of this point so far.
         refinements: usize,
     },
     /// The point was recorded: the next step begins.
@@ -78,20 +78,20 @@ pub(crate) enum Occasion {
     Beside,
 }
 
-/// Levels that a decision chooses from.
+/// Levels of harmonics from which a decision chooses.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Choices {
-    /// The current level.
+    /// Level of the point.
     pub level: usize,
-    /// That of the harmonics that the error requires.
+    /// Level with the harmonics that the error requires.
     pub required: usize,
-    /// That of twice as many harmonics as the current ones.
+    /// Level with twice as many harmonics as the current one.
     pub doubled: usize,
-    /// The lowest one of a curve where something is nonlinear.
+    /// Lowest level of a curve where something is nonlinear.
     pub few: usize,
-    /// The lowest one that the past of the branch admits.
+    /// Lowest level that the past of the branch admits.
     pub lowest: usize,
-    /// The highest affordable one.
+    /// Highest affordable level.
     pub last: usize,
 }
 
@@ -102,17 +102,17 @@ pub(crate) struct Signs {
     /// Error with the margin of its estimate, over the tolerance; NaN where it is unknown.
     pub share: f64,
     pub choices: Choices,
-    /// Whether the wait after a miss lasts: the branch does not drop to the level that missed.
+    /// Whether a recent miss still forbids a drop to the level that missed.
     pub waits: bool,
-    /// Number of successive estimates with a share below [`DROP`].
+    /// Number of successive estimates whose share is below [`DROP`].
     pub low: usize,
-    /// Whether a harmonic costs much.
+    /// Whether each harmonic costs many factorisations or large matrices.
     pub costly: bool,
-    /// Whether the work of the estimate did not suffice, so that more harmonics would tell no more.
+    /// Whether the allowed work did not suffice for the estimate, so that more harmonics would tell no more.
     pub too_large: bool,
 }
 
-/// The decision; levels are those to go to.
+/// The decision, with the level to select.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Action {
     Keep,
@@ -142,7 +142,7 @@ impl Choices {
 }
 
 impl Signs {
-    /// Those of a point that was solved, before its error is known.
+    /// Signs of a point that was solved and whose error is not known yet.
     pub fn solved(predicted: bool) -> Self {
         Self {
             occasion: Occasion::Solved { predicted },
@@ -155,8 +155,8 @@ impl Signs {
         }
     }
 
-    /// Whether a drop is on trial: the fewer harmonics are wanted for their cost, and the change of the response, added to the
-    /// error, shows whether they meet the tolerance.
+    /// Whether a drop is on trial: fewer harmonics are requested because they cost less, and the change of the
+    /// response, added to the error, shows whether they meet the tolerance.
     pub fn is_on_trial(&self) -> bool {
         self.costly && !self.waits && self.share > 0.0
     }
@@ -186,7 +186,7 @@ pub(crate) fn decide(signs: &Signs, state: State) -> Action {
     }
 }
 
-/// The action at an estimated point that meets the tolerance; whether nothing has justified its harmonics.
+/// The action at an estimated point that meets the tolerance; `is_unjustified`: nothing has justified its harmonics.
 fn met(signs: &Signs, is_unjustified: bool) -> Action {
     if signs.share == 0.0 || (is_unjustified && signs.share <= DROP) {
         signs.choices.drop(signs.choices.required)
@@ -195,7 +195,7 @@ fn met(signs: &Signs, is_unjustified: bool) -> Action {
     }
 }
 
-/// At least one level more, where that would tell more.
+/// Refines to a level, by one level at least, where that would tell more; else keeps the level.
 fn refine(signs: &Signs, to: usize) -> Action {
     if signs.too_large {
         return Action::Keep;
@@ -203,7 +203,7 @@ fn refine(signs: &Signs, to: usize) -> Action {
     signs.choices.raise(to.max(signs.choices.level + 1))
 }
 
-/// The action at a recorded point, from which the branch goes on.
+/// The action at a recorded point, before the next step of the branch.
 fn next_step(signs: &Signs, state: State) -> Action {
     let (choices, share) = (&signs.choices, signs.share);
     // With nothing left out, fewer harmonics lose nothing above rounding, whatever the branch went through.

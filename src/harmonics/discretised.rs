@@ -6,11 +6,12 @@ use crate::harmonics::Estimate;
 use crate::harmonics::harmonic_levels::HarmonicLevels;
 use crate::interrupt::Interrupt;
 use crate::model::natural_modes::resonances::Resonance;
+use crate::options::Range;
 use crate::problem::Problem;
 use crate::problem::gauges::Seen;
 use crate::results::{Branch, SpecialKind, Verdict};
 
-/// An estimate with the error that the tolerance bounds; NaN if unknown.
+/// An estimate, with the one error that the tolerance bounds; NaN if unknown.
 pub(crate) struct Assessment {
     pub error: f64,
     pub estimate: Estimate,
@@ -24,23 +25,24 @@ pub(crate) trait Discretised {
     /// The resolutions to choose from.
     fn levels(&self) -> &HarmonicLevels<'_>;
 
-    /// The current resolution.
+    /// Index of the current resolution.
     fn resolution(&self) -> usize;
 
     /// Makes a resolution the current one.
     fn select(&mut self, resolution: usize) -> Result<()>;
 
-    /// A point of another resolution in the current harmonics; it need not be a solution there.
+    /// Turns a point of the resolution `from` into the current harmonics; it need not be a solution there.
     fn transfer(&self, point: &Point, from: usize) -> Result<Point>;
 
-    /// The same with the motions of the corrected solution of its error estimate.
+    /// Turns a point of the resolution `from` into the current harmonics, with the motions of the corrected solution
+    /// of its error estimate.
     fn transfer_corrected(&self, point: &Point, from: usize, estimate: &Estimate) -> Result<Point>;
 
     /// Solves near a point with the current harmonics, see [`crate::continuation::resolve`].
     fn resolve(&mut self, near: &Point, keep_parameter: bool, interrupt: &Interrupt<'_>) -> Result<Option<Point>>;
 
-    /// Bounds the next estimate by the work of the last one: that told nothing, and the next is of the same motion with more
-    /// harmonics.
+    /// Bounds the next estimate by half of the last one's work, after an estimate that told nothing: the next one is
+    /// of the same motion with more harmonics.
     fn share_work(&mut self) {}
 
     /// Estimates the error of a solved point of the current resolution; `None` unless requested.
@@ -50,13 +52,13 @@ pub(crate) trait Discretised {
     /// [`crate::harmonics::estimate_spacing`].
     fn share_of_highest(&self, point: &Point) -> f64;
 
-    /// Takes the estimate made last over to another point of the current resolution, its errors times a factor. `false`
-    /// where the point is to be estimated: where the caller asks for every estimate, or nothing is nonlinear.
+    /// Uses the last estimate for another point of the current resolution, its errors times a factor. `false` where
+    /// the point must be estimated: where the caller requests every estimate, or nothing is nonlinear.
     fn take_over_estimate(&mut self, point: &Point, factor: f64) -> Result<bool>;
 
-    /// The resonances between two parameter values with the contacts in their linear state; `None` where the response
-    /// with linear contacts is not a rational function of the parameter, or they cannot be had.
-    fn resonances(&mut self, _range: (f64, f64)) -> Result<Option<Vec<Resonance>>> {
+    /// The resonances between two parameter values with the contacts in their linear state; `None` where they cannot
+    /// be computed, or the response with linear contacts is not a rational function of the parameter.
+    fn resonances(&mut self, _range: Range) -> Result<Option<Vec<Resonance>>> {
         Ok(None)
     }
 
@@ -87,7 +89,8 @@ pub(crate) trait Discretised {
         0..0
     }
 
-    /// Whether a solution at any parameter may be sought as the first one is: a mode would be another one.
+    /// Whether a solution at any parameter may be sought as the first one was. For a nonlinear mode this could find
+    /// another mode.
     fn may_start_anywhere(&self) -> bool {
         false
     }
@@ -97,17 +100,17 @@ pub(crate) trait Discretised {
         true
     }
 
-    /// A point of a resolution as a further response sees it: its amplitude and slope are those of the response.
+    /// A point of a resolution with amplitude and slope of a further response in place of the observed ones.
     fn seen_by(&mut self, _response: usize, (point, _resolution): PointAt<'_>) -> Result<Point> {
         point.try_clone()
     }
 
-    /// Number of the responses that were asked for.
+    /// Number of requested responses.
     fn responses(&self) -> usize {
         0
     }
 
-    /// A response at a point of a resolution; `None` where it has no instant.
+    /// The value of a response at a point of a resolution; `None` where the response has no instant of an extreme.
     fn reading_of(&mut self, _response: usize, (_point, _resolution): PointAt<'_>) -> Result<Option<Seen>> {
         Ok(None)
     }
@@ -126,28 +129,29 @@ pub(crate) trait Recorder {
     /// Records a solved point of the current resolution as the next one of the curve.
     fn record(&mut self, point: &Point) -> Result<()>;
 
-    /// Solves a point beside the curve as accurately as possible, and leaves the problem evaluated there.
+    /// Solves a point beside the curve as accurately as possible, and leaves the problem evaluated at this point.
     fn sharpen(&mut self, kind: SpecialKind, point: &mut Point) -> Result<()>;
 
     /// Records a sharpened point beside the curve.
     fn record_special(&mut self, kind: SpecialKind, point: &Point) -> Result<()>;
 
-    /// Whether every contact was linear at the point of the curve recorded last, and the analysis follows that as a
+    /// Whether every contact was linear at the last recorded point of the curve, and the analysis follows it as a
     /// linear response.
     fn is_linear(&self) -> bool {
         false
     }
 
-    /// Stability of the last two points of the curve, in their order, the first time that it is requested after the
-    /// last one was recorded; `None` where none is computed.
+    /// Stability of the last two points of the curve, in their order; only at the first call after the last one was
+    /// recorded. `None` where stability is not computed.
     fn take_verdicts(&mut self) -> Option<(Verdict, Verdict)> {
         None
     }
 
-    /// Factor by which more samples of the laws without exact events are required to meet the tolerance; 1: none.
+    /// Factor by which more samples of the laws without exact events are required to meet the tolerance; 1 if none
+    /// are.
     fn sampling_factor(&self) -> usize;
 
-    /// The points that were recorded.
+    /// The branch with the points that were recorded.
     fn branch(&self) -> &Branch;
 }
 

@@ -22,21 +22,21 @@ const DOUBLING_HARMLESS: f64 = 0.05;
 /// Kind: tuned; measured on: not recorded.
 const MISSING: (f64, f64) = (0.5, 2.0);
 
-/// Responses of a point and of its extensions.
+/// Responses of a point and of its extensions to more harmonics.
 #[derive(Clone, Debug)]
 pub(super) struct Doubling {
     point: Vec<Complex64>,
-    /// Whether the norm of several responses counts.
+    /// Whether one norm of all responses is compared, not each response.
     together: bool,
     last: Vec<Complex64>,
-    /// First change, and the last two.
+    /// First change, and the last two changes.
     first: f64,
     changes: [f64; 2],
     extensions: usize,
 }
 
 impl Doubling {
-    /// The responses of the point.
+    /// Starts with the responses of the point.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -51,7 +51,7 @@ impl Doubling {
         })
     }
 
-    /// Adds the responses of the next extension.
+    /// Adds the responses of the next extension, and the change that it made.
     pub fn add(&mut self, responses: &[Complex64]) {
         let change = self.difference(responses, &self.last);
         if self.extensions == 0 {
@@ -62,7 +62,7 @@ impl Doubling {
         self.extensions += 1;
     }
 
-    /// The difference of responses from others, relative to them; 0 where nothing differs.
+    /// Difference of two sets of responses, relative to the second; 0 where nothing differs.
     fn difference(&self, responses: &[Complex64], others: &[Complex64]) -> f64 {
         let differences = responses.iter().zip(others).map(|(a, b)| (a - b).norm());
         if self.together {
@@ -72,17 +72,17 @@ impl Doubling {
         each.fold(0.0, f64::max)
     }
 
-    /// Number of extensions.
+    /// Number of extensions added.
     pub fn extensions(&self) -> usize {
         self.extensions
     }
 
-    /// Size of the whole change so far, relative to the response.
+    /// Size of the change over all extensions so far, relative to the response.
     pub fn whole(&self) -> f64 {
         self.difference(&self.last, &self.point)
     }
 
-    /// The next change, relative to the whole one; infinite where it is not known.
+    /// Predicted next change, relative to the whole one; infinite where it is not known.
     pub fn next(&self) -> f64 {
         let [before, last] = self.changes;
         if self.extensions < 2 || before == 0.0 {
@@ -101,12 +101,12 @@ impl Doubling {
         self.next() <= DOUBLING_SETTLED
     }
 
-    /// Whether the whole change is known well enough where no further extension is possible.
+    /// Whether the whole change is known well enough if no further extension is possible.
     pub fn suffices(&self) -> bool {
         self.next() <= SUFFICIENT
     }
 
-    /// The change that may be missing: d q/(1 − q) with q as found last, all further changes falling like the last one.
+    /// Predicted sum of all further changes, d q/(1 − q), each being q times the one before, with the q found last.
     pub fn missing(&self) -> f64 {
         let [before, last] = self.changes;
         let q = last / before;
@@ -114,7 +114,8 @@ impl Doubling {
         last * share.clamp(MISSING.0, MISSING.1)
     }
 
-    /// Whether the whole change meets a tolerance with all that may be missing. One extension alone shows less than two.
+    /// Whether the whole change and all that may be missing meet a tolerance. One extension alone shows less than
+    /// two.
     pub fn is_harmless(&self, tolerance: f64) -> bool {
         let whole = self.whole();
         match self.extensions {
@@ -143,19 +144,20 @@ impl Doubling {
         self.whole() * (1.0 + self.next()) / self.first
     }
 
-    /// The same with the change that may be missing; `None` where one extension shows no change after the first.
+    /// Ratio of the whole change, with that which may be missing, to the first; `None` where one extension shows no
+    /// change after the first.
     pub fn bounded_ratio(&self) -> Option<f64> {
         let whole = self.whole();
         (self.extensions > 1 && self.first > 0.0).then(|| (whole + self.missing()) / self.first)
     }
 
-    /// The estimate of the last extension with the change that is missing.
+    /// The estimate of the last extension, with the predicted missing change added.
     pub fn completed(&self, mut estimate: Estimate) -> Estimate {
         estimate.scale_response(estimate.response * (1.0 + self.next()));
         estimate
     }
 
-    /// The error of the response after the first extension, with a ratio found before.
+    /// Error of the response after the first extension, by a ratio of changes found before.
     pub fn scaled(&self, ratio: f64) -> f64 {
         ratio * self.first
     }

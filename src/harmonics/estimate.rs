@@ -52,34 +52,34 @@ pub(super) const ESTIMATE_ROUNDING: f64 = 1e-12;
 pub struct Estimate {
     /// Whether the estimate is reliable. If it is not certified, all errors are NaN: unknown.
     pub certified: bool,
-    /// Whether it is uncertified because the extended problem would be too large, so that more harmonics would not
-    /// help.
+    /// Whether the estimate is uncertified because the extended problem would be too large, so that more harmonics
+    /// would not help.
     pub too_large: bool,
     /// Relative error of the relative motions at the contacts, in norm.
     pub motion: f64,
-    /// Relative error of the complex fundamental of the response degree of freedom, or that of the responses that were asked
-    /// for: the largest one, or that of their norm.
+    /// Relative error of the complex fundamental of the response degree of freedom or, if responses were requested,
+    /// of these: the largest error, or that of their norm.
     pub response: f64,
-    /// Relative error of each response that was asked for.
+    /// Relative error of each requested response.
     pub responses: Vec<f64>,
     /// Relative error of the frequency of a nonlinear mode; 0 for a forced response.
     pub frequency: f64,
     /// Absolute error of the damping ratio of a nonlinear mode; 0 for a forced response.
     pub damping: f64,
-    /// Highest harmonic number of the extended problem.
+    /// Highest harmonic of the extended problem.
     pub harmonics: usize,
-    /// Newton steps taken.
+    /// Number of Newton steps taken.
     pub steps: usize,
-    /// ‖Z* − W‖/‖Z*‖
+    /// Relative change ‖Z* − W‖/‖Z*‖ of the motion.
     pub change: f64,
     /// Carried harmonics above H with their share ‖Z*_h‖/‖Z*‖.
     pub tail: Vec<(usize, f64)>,
-    /// The corrected solution.
+    /// The corrected solution Z* with more harmonics.
     pub corrected: Corrected,
 }
 
 impl Estimate {
-    /// Replaces the error of the response, and those of all responses in proportion.
+    /// Sets the error of the response, and changes those of all responses in proportion.
     pub(super) fn scale_response(&mut self, response: f64) {
         let factor = response / self.response;
         for error in &mut self.responses {
@@ -92,29 +92,30 @@ impl Estimate {
 /// A solution with the extended harmonics, one or two Newton steps closer to the exact one.
 #[derive(Clone, Debug)]
 pub struct Corrected {
-    /// The carried harmonics.
+    /// The set of carried harmonics.
     pub set: HarmonicSet,
     /// Packed relative motions, coordinate after coordinate, in the caller's unit of length.
     pub motion: Vec<f64>,
-    /// Fundamental of the response degree of freedom, in that unit.
+    /// Fundamental of the response degree of freedom, in the caller's unit of length.
     pub response: Complex64,
-    /// The responses that were asked for, in that unit: complex amplitudes where they have one.
+    /// The requested responses, in the caller's unit of length: complex amplitudes where they have such.
     pub watched: Vec<Complex64>,
-    /// Angular frequency.
+    /// Angular frequency of the corrected solution.
     pub omega: f64,
     /// Damping ratio of a nonlinear mode.
     pub damping: f64,
-    /// Coordinates whose motions are exchanged: rates, whose harmonics count 1/h; none where it is empty.
+    /// Per coordinate, whether its motion is exchanged, so that it is a rate and harmonic h counts 1/h; empty if none
+    /// is.
     pub(crate) rates: Vec<bool>,
 }
 
 impl Corrected {
-    /// Size of the i-th carried harmonic.
+    /// Size of the motions at the contacts in the i-th carried harmonic.
     pub(crate) fn size(&self, i: usize) -> f64 {
         size_of_harmonic(&self.set, (&self.motion, &self.rates), i)
     }
 
-    /// Drops the harmonics above the fundamental whose size is rounding: of this size at most.
+    /// Drops the harmonics above the fundamental whose size is at most `rounding`.
     pub(super) fn drop_rounding(&mut self, rounding: f64) {
         for i in 0..self.set.numbers().len() {
             if self.set.numbers()[i] <= 1 || self.size(i) > rounding {
@@ -127,7 +128,7 @@ impl Corrected {
     }
 }
 
-/// Size of the i-th harmonic of packed motions, of rates divided by its number.
+/// Size of the i-th harmonic of packed motions; motions that are rates are divided by the number of the harmonic.
 pub(super) fn size_of_harmonic(set: &HarmonicSet, (motion, rates): (&[f64], &[bool]), i: usize) -> f64 {
     let of_rate = (set.numbers()[i] as f64).max(1.0).recip();
     let signals = motion.chunks_exact(set.packed_len()).enumerate();
@@ -138,24 +139,24 @@ pub(super) fn size_of_harmonic(set: &HarmonicSet, (motion, rates): (&[f64], &[bo
     signals.map(of_one).fold(0.0, f64::hypot)
 }
 
-/// A solved point.
+/// A solved point, as the estimators need it.
 #[derive(Clone, Copy)]
 pub struct Solved<'a> {
     /// The model as it was condensed for the point.
     pub condensed: &'a Condensed,
     /// Packed relative motions, in the solver's unit of length.
     pub motion: &'a [f64],
-    /// Angular frequency.
+    /// Angular frequency of the point.
     pub omega: f64,
     /// Fundamental of the response degree of freedom, in the caller's unit of length.
     pub response: Complex64,
-    /// The responses that were asked for, in that unit.
+    /// The requested responses, in the caller's unit of length.
     pub watched: &'a [Complex64],
-    /// Whether their error is that of one norm.
+    /// Whether the error of the responses is that of one norm of them all.
     pub together: bool,
     /// Whether all contacts stick, if that is known.
     pub sticks: Option<bool>,
-    /// Newton iterations of a solution without a neighbour, by which the work of an estimate is bounded.
+    /// Newton iterations that a solution without a neighbour takes, which bound the work of an estimate.
     pub iterations: usize,
 }
 
@@ -223,7 +224,7 @@ impl Solved<'_> {
         })
     }
 
-    /// The packed motions in the harmonics of an extended model, zero above those of the point.
+    /// Packed motions times `factor` in the harmonics of an extended model; zero above the harmonics of the point.
     pub(super) fn extended(&self, to: &Condensed, unknowns: usize, factor: f64) -> Result<Vec<f64>> {
         let factor = factor * self.condensed.length() / to.length();
         let mut extended = try_vec(unknowns, 0.0, CONTEXT)?;
@@ -248,7 +249,7 @@ pub(super) fn relative(difference: f64, number: Complex64) -> f64 {
     }
 }
 
-/// Sizes of the harmonics above those of `below`, relative to the norm of all.
+/// Sizes of the harmonics above those of `below`, each relative to the norm of all, with their numbers.
 pub(super) fn tail(
     set: &HarmonicSet,
     below: &HarmonicSet,
@@ -274,8 +275,8 @@ pub(super) fn has_converged_tail(tail: &[(usize, f64)], change: f64) -> bool {
     beyond <= CONVERGED_TAIL * change
 }
 
-/// Whether a solution with the harmonics of `below`, of this relative residual at most, solves the extended problem
-/// as well: no force acts above them, but for `rounding` of a residual, and below them more samples change nothing.
+/// Whether a solution with the harmonics of `below` and at most this relative residual also solves the extended
+/// problem: no force above `rounding` acts in the further harmonics, and in the others more samples change nothing.
 pub(super) fn omits_nothing(
     (residual, scale, rounding): (&[f64], f64, f64),
     set: &HarmonicSet,
@@ -318,8 +319,9 @@ pub(super) fn extended_options(options: &SolverOptions, highest: usize) -> Solve
     }
 }
 
-/// An estimate that could not be made becomes unknown, also where its counted size exceeds the limit of the caller. Memory
-/// that is short at the moment must not change results: that is an error, as is that of a callback that gives up.
+/// Turns an estimate that could not be made into an unknown one, also where its counted size exceeds the limit of the
+/// caller. Memory that is short at the moment must not change results: that stays an error, as does a callback that
+/// gives up.
 pub(super) fn or_unknown(found: Result<Option<Estimate>>, solved: &Solved<'_>, damping: f64) -> Result<Estimate> {
     match found {
         Ok(Some(estimate)) => Ok(estimate),

@@ -63,17 +63,17 @@ pub(crate) fn share_of_highest(set: &HarmonicSet, motion: &[f64]) -> f64 {
     above / norm(motion)
 }
 
-/// Signs of the trend of the error from one point to another.
+/// Data of a point that show how the error changes from one point to another.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Trend {
     /// Share of the highest harmonics, see [`share_of_highest`].
     pub share: f64,
-    /// |dX/dp|/|X| of the response observed.
+    /// Steepness |dX/dp|/|X| of the observed response X over the parameter p.
     pub steepness: f64,
 }
 
 impl Trend {
-    /// That of a point with this share.
+    /// Trend of a point with a given share of the highest harmonics.
     pub fn of(point: &Point, share: f64) -> Self {
         let along = point.tangent.last().copied().unwrap_or(0.0).abs() * point.amplitude.norm();
         let steepness = if along > 0.0 {
@@ -84,7 +84,7 @@ impl Trend {
         Self { share, steepness }
     }
 
-    /// Factor by which the error grows with the steepness, from a point with another one.
+    /// Factor by which the error grows with the steepness, from `other` to this point.
     fn steeper_than(self, other: Self) -> f64 {
         if self.steepness > other.steepness {
             self.steepness / other.steepness
@@ -94,23 +94,24 @@ impl Trend {
     }
 }
 
-/// Estimate made last.
+/// The last estimate, by which errors are predicted.
 #[derive(Clone, Copy, Debug)]
 struct Known {
     error: f64,
     trend: Trend,
     level: usize,
-    /// q
+    /// Exponent q of the share of the highest harmonics.
     exponent: f64,
 }
 
 impl Known {
-    /// The factor from this error to that of a point with another one.
+    /// Predicted error of a point with another trend, over the error of this estimate.
     fn factor_to(&self, trend: Trend) -> f64 {
         (trend.share / self.trend.share).powf(self.exponent) * trend.steeper_than(self.trend)
     }
 
-    /// The exponent that leads from this error to that of a point with another one; as before where the shares are alike.
+    /// Exponent q that fits the errors of this estimate and of a point with another trend; unchanged where the shares
+    /// are alike.
     fn exponent_to(&self, trend: Trend, error: f64) -> f64 {
         let shares = trend.share / self.trend.share;
         let grown = error / (self.error * trend.steeper_than(self.trend));
@@ -123,20 +124,20 @@ impl Known {
     }
 }
 
-/// Decides which points are estimated.
+/// Decides which points get an estimate, by the trend since the last one.
 #[derive(Debug, Default)]
 pub(crate) struct EstimateSpacing {
     known: Option<Known>,
     spacing: usize,
-    /// Points since that estimate.
+    /// Number of points since the last estimate.
     since: usize,
-    /// Step to the point before.
+    /// Length of the step to the point before.
     step: f64,
 }
 
 impl EstimateSpacing {
-    /// The factor from the error estimated last to that of a point of this trend; `None` where the point is to be
-    /// estimated. Errors up to `largest` need no estimate.
+    /// Predicted error of a point with this trend over the error estimated last; `None` where the point needs an
+    /// estimate. Errors up to `largest` need none.
     pub fn factor(&mut self, level: usize, trend: Trend, largest: f64) -> Option<f64> {
         let known = self.known.filter(|known| known.level == level)?;
         if self.since + 1 >= self.spacing {
@@ -197,8 +198,8 @@ impl EstimateSpacing {
         });
     }
 
-    /// Notes the step to a point. Where the branch itself was hard to predict, as where another harmonic begins to resonate, its
-    /// error is, too: the point is estimated.
+    /// Notes the length of the step to a point. Where the branch was hard to predict, as where another harmonic
+    /// begins to resonate, the error is hard to predict too: the point gets an estimate.
     pub fn note_step(&mut self, step: f64) {
         let before = core::mem::replace(&mut self.step, step);
         if step > 0.0 && step < SHORTENED * before {
@@ -206,7 +207,7 @@ impl EstimateSpacing {
         }
     }
 
-    /// Forgets the estimate made last: the next point is estimated.
+    /// Forgets the last estimate: the next point gets one.
     pub fn forget(&mut self) {
         self.known = None;
     }

@@ -39,33 +39,33 @@ const LEAST_DESCENT: f64 = 0.1;
 /// Kind: tuned; measured on: not recorded.
 const EXTENDED_NEWTON_SMALLEST_DAMPING: f64 = 1.0 / 64.0;
 
-/// Whether a short first step is returned as δ, the next one being far shorter.
+/// Whether a short first step is accepted as the correction δ because the next one would be far shorter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum FirstStep {
-    /// The next one shows that it is right.
+    /// Only if the next step confirms it.
     Checked,
-    /// It is where the extended harmonics are known to be weak, kt|G_h| < ½.
+    /// Yes: the extended harmonics are known to be weak, kt|G_h| < ½.
     Suffices,
-    /// The same, found roughly: where it shows no more than that what is missing is small.
+    /// Yes, with the step solved to few digits, where it only has to show that the missing part is small.
     SufficesRoughly,
 }
 
 /// The result of the damped Newton method.
 pub(super) struct ExtendedSolution {
-    /// Z, at which the problem was evaluated last.
+    /// Motion Z, at which the problem was evaluated last.
     pub at: Vec<f64>,
-    /// δ, the simplified Newton step from there, and 0 for the parameter.
+    /// δ, the simplified Newton step from Z, followed by 0 for the parameter.
     pub next: Vec<f64>,
-    /// Whether δ is small enough.
+    /// Whether δ is so small that the solution is certified.
     pub certified: bool,
-    /// Newton steps taken, each with a factorisation.
+    /// Number of Newton steps taken, each with a factorisation.
     pub steps: usize,
     /// Share of δ that may still be missing in Z*.
     pub missing: f64,
 }
 
 impl ExtendedSolution {
-    /// Z* = Z + δ
+    /// Corrected solution Z* = Z + δ.
     pub fn corrected(&self) -> Result<Vec<f64>> {
         sum(&self.at, &self.next)
     }
@@ -91,9 +91,9 @@ fn change_from(point: &[f64], (z, next): (&[f64], &[f64]), change: &mut [f64]) {
     }
 }
 
-/// Solves R(Z) = 0 from `start`, at which the system was evaluated, until `enough(problem, Z, change, δ)` accepts δ as
-/// small against the change Z + δ − W from the point `W`; δ has a last number 0, that of the parameter. `None` where some
-/// evaluation or matrix fails.
+/// Solves R(Z) = 0 from `start`, at which the system was evaluated, until `enough(problem, Z, change, δ)` accepts δ
+/// as small against the change Z + δ − W from the point W. δ ends with a 0 for the parameter. `None` where an
+/// evaluation or a matrix fails.
 ///
 /// A start other than W is a guess: the first step from it may be δ.
 ///

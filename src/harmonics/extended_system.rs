@@ -35,9 +35,10 @@ const EXTENDED_SYSTEM_MOST_PRODUCTS: usize = 240;
 /// The carried harmonics that an iterative linear system factors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Factored {
-    /// The first of them, factored as one block.
+    /// Number of the lowest carried harmonics that are factored as one block.
     pub block: usize,
-    /// Those up to which the others are factored each by itself, with the mean stiffness of the contacts.
+    /// Number of the carried harmonics up to which the others are factored one by one, with the mean stiffness of the
+    /// contacts.
     pub each: usize,
 }
 
@@ -47,14 +48,15 @@ pub(super) struct ExtendedSystem<P> {
     parameter: f64,
     pub at: Residual,
     system: Box<dyn LinearSystem>,
-    /// Harmonics that the linear system factors, or the sectors of a wheel whose waves it factors.
+    /// Harmonics that the linear system factors; and the number of sectors of a wheel, where it factors waves.
     factored: Factored,
     sectors: Option<usize>,
-    /// Whether some solution did not converge in [`EXTENDED_SYSTEM_MOST_PRODUCTS`] products.
+    /// Whether some iteration did not converge within [`EXTENDED_SYSTEM_MOST_PRODUCTS`] products.
     pub stalled: bool,
-    /// Whether the equations are those of exchanged motions, see [`crate::condense::blocks::exchange`].
+    /// Whether the equations are monotone, as those of exchanged motions are, see
+    /// [`crate::condense::blocks::exchange`].
     pub is_monotone: bool,
-    /// Residual that steps may leave.
+    /// Size of residual down to which steps are solved.
     goal: f64,
     sizes: Sizes,
     work: Work,
@@ -140,8 +142,8 @@ impl<P: Problem> ExtendedSystem<P> {
         }
     }
 
-    /// Takes the residual evaluated last for that of the point, by which the following steps are measured: each later one is
-    /// smaller, and need not be found to as many digits.
+    /// Takes the residual evaluated last as that of the point, with which later steps are compared: each is smaller,
+    /// and needs fewer digits.
     pub fn measure_by_point(&mut self, extended_before: bool) {
         let share = if extended_before {
             OF_EXTENDED
@@ -198,12 +200,12 @@ impl<P: Problem> ExtendedSystem<P> {
         Ok(self.work.spend(each * self.system.products() as f64) && solved)
     }
 
-    /// Whether its solutions take many products, because the block does not hold all compliant harmonics.
+    /// Whether solutions take many products, because the factored block does not hold all compliant harmonics.
     pub fn iterates_long(&self) -> bool {
         self.sectors.is_none() && self.factored.each > self.factored.block
     }
 
-    /// Operations of a product.
+    /// Number of operations of one product with the Jacobian.
     fn of_product(&self) -> f64 {
         let (packed, pairs) = self.factored_numbers();
         match self.sectors {
@@ -212,18 +214,18 @@ impl<P: Problem> ExtendedSystem<P> {
         }
     }
 
-    /// Bytes of the system.
+    /// Number of bytes that the system needs.
     pub fn bytes(&self) -> f64 {
         let (packed, pairs) = self.factored_numbers();
         self.sizes.bytes(packed, pairs)
     }
 
-    /// The work that is left.
+    /// Remaining work of the estimate.
     pub fn work(&self) -> Work {
         self.work
     }
 
-    /// Numbers of a packed signal in the block, and pairs factored each by itself.
+    /// Numbers of a packed signal in the factored block; and pairs of numbers that are factored one by one.
     fn factored_numbers(&self) -> (f64, f64) {
         let pairs = self.factored.each.saturating_sub(self.factored.block);
         (self.sizes.packed().min(2.0 * self.factored.block as f64), pairs as f64)
@@ -231,7 +233,7 @@ impl<P: Problem> ExtendedSystem<P> {
 }
 
 impl<P: PackedHarmonics> ExtendedSystem<P> {
-    /// A problem of these sizes at a parameter value, with the work that it may take.
+    /// A problem of the given sizes at a parameter value, solved by iteration, with the work that it may take.
     pub fn iterative(problem: P, parameter: f64, factored: Factored, (sizes, work): (Sizes, Work)) -> Result<Self> {
         let factored = factored_of(&problem, factored);
         let (system, sectors) = krylov(&problem, factored)?;
@@ -254,7 +256,7 @@ impl<P: PackedHarmonics> ExtendedSystem<P> {
     }
 }
 
-/// All harmonics in one block for a small problem.
+/// Harmonics to factor: all in one block for a small problem, else as given.
 fn factored_of(problem: &impl PackedHarmonics, factored: Factored) -> Factored {
     let whole = problem.harmonics().numbers().len();
     if problem.size() <= EXTENDED_SYSTEM_DENSE_UP_TO {
@@ -267,7 +269,8 @@ fn factored_of(problem: &impl PackedHarmonics, factored: Factored) -> Factored {
     }
 }
 
-/// The system, with the sectors of a wheel whose waves it factors, as long as no block of all harmonics is asked for.
+/// The iterative linear system; and the number of sectors of a wheel where it factors waves, unless one block of all
+/// harmonics is requested.
 fn krylov(problem: &impl PackedHarmonics, factored: Factored) -> Result<(KrylovSystem, Option<usize>)> {
     let set = problem.harmonics();
     let part = packed_up_to(set, factored.block);
@@ -324,7 +327,7 @@ mod tests {
             ..SolverOptions::default()
         };
         let condensed = Condensed::new(&model, &options, omega, &none).unwrap();
-        let problem = || HarmonicBalance::new(&condensed, 0, (omega, omega), 0, None, &none).unwrap();
+        let problem = || HarmonicBalance::new(&condensed, 0, (omega, omega).into(), 0, None, &none).unwrap();
         let sizes = Sizes::new(&condensed, 0);
         let work = Work::of_point(&sizes, 40, 0);
         let bounded = |enough| work.highest((&condensed, enough), &options, 1.0, Sizes::evaluation);

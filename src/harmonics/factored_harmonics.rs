@@ -11,20 +11,20 @@ const FACTORISATIONS: f64 = 5.0;
 /// Kind: tuned; measured on: not recorded.
 const FACTORED_HARMONICS_BLOCK: f64 = 200.0;
 
-/// The first harmonics in one block as far as its factors cost little and the work allows, and the other compliant ones
-/// each by itself.
+/// Factors the lowest harmonics in one block, as far as it is cheap and the work allows, and each other compliant one
+/// by itself.
 pub(super) fn factored(sizes: &Sizes, compliant: usize, work: &Work) -> Factored {
     within(sizes, compliant, FACTORED_HARMONICS_BLOCK, work)
 }
 
-/// All harmonics in one block, if the work allows: where contacts are far stiffer than their reference stiffness, the
-/// compliant ones are not enough.
+/// Factors all harmonics in one block; `None` if the work does not allow it. This is for contacts far stiffer than
+/// their reference stiffness, where the compliant harmonics are not enough.
 pub(super) fn whole(sizes: &Sizes, work: &Work) -> Option<Factored> {
     let all = sizes.harmonics();
     Some(within(sizes, all, f64::INFINITY, work)).filter(|found| found.block == all)
 }
 
-/// The first of the compliant harmonics in one block of an order at most.
+/// Factors the lowest compliant harmonics in one block of at most the given order.
 fn within(sizes: &Sizes, compliant: usize, order: f64, work: &Work) -> Factored {
     let fits = |block: usize| {
         let packed = sizes.packed().min(2.0 * block as f64);

@@ -20,6 +20,7 @@ use crate::harmonics::work::{OF_A_POINT, OF_A_START, Sizes, Work};
 use crate::harmonics::{Corrected, Estimate, Solved};
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
+use crate::options::Range;
 use crate::options::{Response, SolverOptions};
 use crate::problem::harmonic_balance::HarmonicBalance;
 use num_complex::Complex64;
@@ -64,29 +65,29 @@ pub struct ForcedEstimator<'a> {
     cutoff: Option<CutoffHarmonic>,
     models: &'a ModelCache,
     interrupt: &'a Interrupt<'a>,
-    /// Whether all points have one frequency: no extended problem serves the next one.
+    /// Whether all points have one frequency, so that no extended problem is kept.
     single: bool,
-    /// Whether some estimate told nothing.
+    /// Whether some estimate told nothing, for want of work.
     told_nothing: bool,
-    /// The problems extended last, with their slots in the cache.
+    /// Extended problems of the last estimates, with their slots in the cache.
     extended: Vec<(usize, Box<ExtendedSystem<HarmonicBalance<'a>>>)>,
     ratio: KeptRatio,
     changes: KeptChanges,
-    /// Operations that the last estimate might take, and the most that the next one may.
+    /// Operations that the last estimate was allowed, and the limit for the next one.
     allowed: f64,
     most: f64,
-    /// Modes of the waves, and how many flexibility tables were made so far.
+    /// Modes of the waves; and the number of flexibility tables made so far.
     waves: &'a SharedWaves,
     rows: Vec<Arc<ModalRows>>,
     tables: usize,
     /// Range of the frequencies of the points.
-    range: Option<(f64, f64)>,
-    /// The responses that were asked for.
+    range: Option<Range>,
+    /// The requested responses.
     responses: &'a [Response<'a>],
 }
 
 impl<'a> ForcedEstimator<'a> {
-    /// For solutions of `model` with these options, observing degree of freedom `response`.
+    /// An estimator for solutions of `model` with these options, which observe degree of freedom `response`.
     #[must_use]
     pub fn new(
         model: &'a Model,
@@ -117,21 +118,21 @@ impl<'a> ForcedEstimator<'a> {
         }
     }
 
-    /// Watches responses: their errors count.
+    /// Adds requested responses, whose errors then count.
     pub fn watching(mut self, responses: &'a [Response<'a>]) -> Self {
         self.responses = responses;
         self
     }
 
-    /// For points in a range of frequency; for one point at a single frequency, after which no extended problem is kept.
+    /// Sets the range of frequency of the points. For a single frequency no extended problem is kept.
     #[must_use]
-    pub fn over(mut self, range: (f64, f64)) -> Self {
-        self.single = range.0.to_bits() == range.1.to_bits();
+    pub fn over(mut self, range: Range) -> Self {
+        self.single = range.is_single();
         self.range = (!self.single).then_some(range);
         self
     }
 
-    /// Bounds the next estimate by half of the work that the last one might take, which told nothing.
+    /// Limits the next estimate to half of the work that was allowed to the last one, which told nothing.
     pub fn share_work(&mut self) {
         self.most = SHARED * self.allowed;
     }
@@ -211,7 +212,7 @@ impl<'a> ForcedEstimator<'a> {
         }))
     }
 
-    /// The highest harmonic to which the work suffices to extend a point; `enough` where that is no higher.
+    /// Highest harmonic to which the allowed work can extend a point; `enough` if it is higher.
     fn affordable(&self, solved: &Solved<'_>, work: &Work, enough: usize) -> usize {
         work.highest(
             (solved.condensed, enough),
@@ -237,7 +238,8 @@ impl<'a> ForcedEstimator<'a> {
         }
     }
 
-    /// The estimate of a point with exchanged motions, no less than its change from half the harmonics tells.
+    /// Estimate for a point with exchanged motions: `found`, or the change from half the harmonics where this tells a
+    /// larger error.
     #[inline(never)]
     fn with_half(&mut self, solved: &Solved<'_>, mut found: Estimate, work: Work) -> Result<Option<Estimate>> {
         let tolerance = self.options.tolerance;
@@ -342,7 +344,7 @@ impl<'a> ForcedEstimator<'a> {
         }
     }
 
-    /// Whether modes are known, or so many tables were made that they pay.
+    /// Whether sums over modes pay: modes are known, or many tables were made.
     fn modes_pay(&mut self, condensed: &Condensed) -> bool {
         self.tables += condensed.set().numbers().len();
         // Factors of a sparse matrix cost less, modes do not.
@@ -386,7 +388,7 @@ impl<'a> ForcedEstimator<'a> {
         Ok(tables)
     }
 
-    /// The model with harmonics up to one at least; `None` where there is none.
+    /// A resolution with at least the harmonics up to `highest`; `None` where there is none.
     fn model_with(&self, highest: usize, solved: &Solved<'_>) -> Result<Option<&'a Resolution>> {
         let slot = self.models.slot_with(highest);
         if slot == self.models.slots() {
@@ -405,7 +407,7 @@ impl<'a> ForcedEstimator<'a> {
                 condensed
             } else {
                 // One scale for all points, so that they share tables of one unit.
-                let (start, stop) = self.range.unwrap_or((solved.omega, solved.omega));
+                let Range { start, stop } = self.range.unwrap_or(solved.omega.into());
                 // Exchanged motions are those of the whole range.
                 let stop = if solved.condensed.has_exchanges() { stop } else { start };
                 Condensed::new(self.model, &options, (start, stop), self.interrupt)?
@@ -458,7 +460,7 @@ impl<'a> ForcedEstimator<'a> {
             system.set_point(omega, factored, work)?;
             system
         } else {
-            let range = (omega, omega);
+            let range = omega.into();
             let (response, samples, interrupt) = (self.response, resolution.samples, self.interrupt);
             let mut problem = boxed(|| HarmonicBalance::new(condensed, response, range, samples, None, interrupt))?;
             problem.watch((self.responses, response), samples)?;
@@ -493,7 +495,8 @@ impl<'a> ForcedEstimator<'a> {
         Ok((found?, left))
     }
 
-    /// Forgets the oldest of the extended problems that do not fit into the memory of an estimate beside that of a slot.
+    /// Drops the oldest extended problems that do not fit into the memory of an estimate together with one of
+    /// `of_slot` bytes in a slot.
     fn forget_beside(&mut self, slot: usize, of_slot: f64, work: &Work) {
         if self.single {
             self.extended.retain(|(kept, _)| *kept == slot);
@@ -509,7 +512,7 @@ impl<'a> ForcedEstimator<'a> {
     }
 }
 
-/// The numbers that doubling watches: the responses that were asked for, or the one that every point has.
+/// The numbers that doubling watches: the requested responses, or without these the one that every point has.
 fn observed<'o>(response: &'o Complex64, watched: &'o [Complex64]) -> &'o [Complex64] {
     if watched.is_empty() {
         core::slice::from_ref(response)

@@ -9,26 +9,27 @@ use crate::harmonics::decision::{DROP, State};
 const CONTROLLER_PATIENCE: usize = 10;
 const MOST_PATIENCE: usize = 80;
 
-/// The past of a branch.
+/// Past of a branch, as far as it limits the choice of harmonics.
 #[derive(Debug)]
 pub(crate) struct HarmonicHistory {
-    /// Whether no nonlinear point met the tolerance yet.
+    /// Whether no nonlinear point has met the tolerance yet.
     fresh: bool,
-    /// Whether the branch had a fold.
+    /// Whether the branch has had a fold.
     folded: bool,
-    /// Where the branch was refined because an error was unknown: the number of points until it may be coarsened again.
+    /// Number of points until the branch may be coarsened again, after it was refined because an error was unknown;
+    /// else `None`.
     unknown: Option<usize>,
-    /// Lowest level to which the branch may be coarsened, one above that where a point missed the tolerance, and the
-    /// number of points for which it holds.
+    /// Lowest level to which the branch may be coarsened, one above a level where a point missed the tolerance; and
+    /// the number of points for which this holds.
     floor: (usize, usize),
-    /// The highest level so far.
+    /// Highest level of the branch so far.
     highest: usize,
     /// Number of successive estimates far below the tolerance.
     low: usize,
 }
 
 impl HarmonicHistory {
-    /// That of a branch without a point.
+    /// History of a branch without a point.
     pub fn new() -> Self {
         Self {
             fresh: true,
@@ -40,7 +41,7 @@ impl HarmonicHistory {
         }
     }
 
-    /// The state of the branch. A fold is never forgotten, once an error has justified the harmonics.
+    /// State of the branch. A fold is never forgotten once an error has justified the harmonics.
     pub fn state(&self) -> State {
         match (self.fresh, self.folded, self.unknown) {
             (true, ..) => State::Fresh,
@@ -50,12 +51,12 @@ impl HarmonicHistory {
         }
     }
 
-    /// Notes that harmonics are justified: by an error, or as the fewest of a curve.
+    /// Notes that the current harmonics are justified: by an error, or as the fewest of a curve.
     pub fn note_justified(&mut self) {
         self.fresh = false;
     }
 
-    /// Notes a fold.
+    /// Notes that the branch has a fold.
     pub fn note_fold(&mut self) {
         self.folded = true;
     }
@@ -65,7 +66,7 @@ impl HarmonicHistory {
         self.low = if share < DROP { self.low + 1 } else { 0 };
     }
 
-    /// Notes a point that misses the tolerance at a level, or whose error is unknown there.
+    /// Notes that a point at a level missed the tolerance, or that its error was unknown.
     pub fn note_miss(&mut self, is_unknown: bool, level: usize) {
         self.unknown = is_unknown.then(|| {
             self.unknown
@@ -74,33 +75,33 @@ impl HarmonicHistory {
         self.floor = (level + 1, self.unknown.unwrap_or(CONTROLLER_PATIENCE));
     }
 
-    /// Notes that more harmonics than those of a level told no more.
+    /// Notes that refining beyond a level told nothing more.
     pub fn note_settled(&mut self, level: usize) {
         self.floor = (level, 0);
     }
 
-    /// Notes that a trial with fewer harmonics than those of a level failed.
+    /// Notes that a trial with fewer harmonics than those of `level` failed.
     pub fn note_failed_trial(&mut self, level: usize) {
         self.floor = (level, CONTROLLER_PATIENCE);
     }
 
-    /// Notes a recorded point of a level: the wait after a miss is shorter by one.
+    /// Notes a recorded point of a level. The wait after a miss gets shorter by one point.
     pub fn note_recorded(&mut self, level: usize) {
         self.floor.1 = self.floor.1.saturating_sub(1);
         self.highest = self.highest.max(level);
     }
 
-    /// Whether the wait after a miss lasts.
+    /// Whether a recent miss still limits the coarsening.
     pub fn waits(&self) -> bool {
         self.floor.1 > 0
     }
 
-    /// The lowest level while that wait lasts, else 0.
+    /// Lowest level to which the branch may be coarsened while a recent miss counts, else 0.
     pub fn floor(&self) -> usize {
         if self.waits() { self.floor.0 } else { 0 }
     }
 
-    /// The highest level so far.
+    /// Highest level of the branch so far.
     pub fn highest(&self) -> usize {
         self.highest
     }

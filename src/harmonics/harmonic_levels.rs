@@ -31,17 +31,18 @@ const HARMONIC_LEVELS_SMALL: usize = 32;
 /// Kind: tuned; measured on: not recorded.
 const SAMPLES_PER_HARMONIC: usize = 8;
 
-/// Condenses the model to harmonics up to the one given; from the same with fewer, where there is one.
+/// A function that condenses the model to the harmonics up to a given one, reusing a condensed model with fewer where
+/// there is one.
 type Condense<'m> = dyn Fn(usize, Option<&Condensed>) -> Result<Condensed> + 'm;
 
-/// The levels; the model is condensed at each of them when it is first requested.
+/// Levels: rising numbers of harmonics. The model is condensed at a level when this is first requested.
 pub(crate) struct HarmonicLevels<'m> {
     models: ModelCache,
     samples: usize,
     automatic: bool,
-    /// Whether a harmonic costs many factorisations.
+    /// Whether a harmonic costs many factorisations or large matrices.
     costly: bool,
-    /// Bytes that the equations of a level may have; 0: any.
+    /// Bytes that the equations of a level may need; 0: no limit.
     memory_limit: usize,
     condense: Box<Condense<'m>>,
 }
@@ -87,44 +88,44 @@ impl<'m> HarmonicLevels<'m> {
         self.costly || known.is_some_and(|known| known.condensed.has_exchanges())
     }
 
-    /// Number of levels.
+    /// Number of levels available.
     pub fn count(&self) -> usize {
         self.models.slots()
     }
 
-    /// The initial level: as many harmonics as `harmonics` states, fewer if the levels end before.
+    /// Initial level, with the harmonics up to `harmonics`, or the last one if the levels end before.
     pub fn first(&self, harmonics: usize) -> usize {
         self.models.numbers().rposition(|h| h <= harmonics).unwrap_or(0)
     }
 
-    /// The lowest level with all harmonics up to h; if there is none, the last affordable one.
+    /// Lowest level with all harmonics up to h, or the last affordable one if there is none.
     pub fn level_with(&self, h: usize) -> usize {
         self.models.slot_with(h).min(self.last())
     }
 
-    /// The lowest level that carries these harmonics; with a fixed number there is one.
+    /// Lowest level that carries the harmonics of `set`; with a fixed number of harmonics there is just one level.
     pub fn level_of(&self, set: &HarmonicSet) -> usize {
         self.level_with(set.numbers().last().copied().unwrap_or(0))
     }
 
-    /// The highest harmonic that a level requests.
+    /// Highest harmonic that a level requests.
     pub fn highest(&self, level: usize) -> usize {
         self.models.highest(level)
     }
 
-    /// The lowest level with about half as many harmonics as one.
+    /// Lowest level with about half as many harmonics as a given one.
     pub fn level_of_half(&self, level: usize) -> usize {
         self.models.slot_with(self.models.highest(level) / 2)
     }
 
-    /// The lowest level with at least twice as many harmonics as one.
+    /// Lowest level with at least twice as many harmonics as a given one.
     pub fn level_of_double(&self, level: usize) -> usize {
         self.level_with(2 * self.models.highest(level))
     }
 
-    /// The lowest level along a branch where something is nonlinear. With the forced harmonics alone nothing shows how the
-    /// error changes, so that each point is estimated: that pays where the next level has many unknowns, and the estimates
-    /// cost no factorisation.
+    /// Lowest level of a branch where something is nonlinear. With the forced harmonics alone nothing shows how the
+    /// error changes, so that each point needs an estimate: this pays where the next level has many unknowns, and the
+    /// estimates cost no factorisation.
     pub fn few(&self) -> usize {
         let pays = |known: &Resolution| affordable(&known.condensed, HARMONIC_LEVELS_SMALL) < self.models.highest(1);
         usize::from(self.costly || self.count() < 2 || !self.models.any().is_some_and(pays))
@@ -141,7 +142,7 @@ impl<'m> HarmonicLevels<'m> {
         below.max(1) - 1
     }
 
-    /// Samples of the laws at a level.
+    /// Samples per period of the sampled laws with harmonics up to `highest`; 0 for exact events.
     fn samples_up_to(&self, highest: usize) -> usize {
         match self.samples {
             n if n > 0 && self.automatic => n.max(SAMPLES_PER_HARMONIC * highest).min(MAX_SAMPLES),
@@ -149,7 +150,7 @@ impl<'m> HarmonicLevels<'m> {
         }
     }
 
-    /// The model at a level.
+    /// The model condensed to the harmonics of a level.
     ///
     /// # Errors
     /// Those of condensing the model; `OutOfMemory` where its equations exceed the limit of the options.

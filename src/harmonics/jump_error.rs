@@ -37,8 +37,9 @@ const OF_RING: f64 = 0.5;
 /// Kind: tuned; measured on: not recorded.
 const BEYOND_RING: f64 = 2.0;
 
-/// The error of a point over its change, and what it errs besides, in the solver's unit: 1 and 0 without exchanged motions. `None` where
-/// it is not found. The system has its matrix factored, and `at` was evaluated last.
+/// Factor and additional term of the error of a point: error = factor · change + term, the term in the solver's unit;
+/// 1 and 0 without exchanged motions. `None` where they are not found. The system must have its matrix factored, and
+/// must have been evaluated last at `at`.
 pub(super) fn beyond_extension(
     system: &mut ExtendedSystem<HarmonicBalance<'_>>,
     condensed: &Condensed,
@@ -52,8 +53,8 @@ pub(super) fn beyond_extension(
     Ok(late.map(|late| (OF_JUMPS, late)))
 }
 
-/// Change of the observed response, in the solver's unit, with the lateness of all forces whose sticks ring; `None` where it is not
-/// found.
+/// Change of the observed response, in the solver's unit, by the delay of all forces whose stick stiffness rings;
+/// `None` where it is not found.
 fn lateness(
     system: &mut ExtendedSystem<HarmonicBalance<'_>>,
     condensed: &Condensed,

@@ -17,14 +17,14 @@ const KEPT_CHANGES_ALIKE: (f64, f64) = (0.5, 2.0);
 /// Kind: tuned; measured on: not recorded.
 const KEPT_CHANGES_MOST: usize = 6;
 
-/// From what to what a motion was extended: its highest harmonic, and the slot of the extended model.
+/// Kind of an extension: highest harmonic of the point, and slot of the extended model.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) struct Extension {
     pub highest: usize,
     pub slot: usize,
 }
 
-/// Changes by extensions, the latest of each kind.
+/// Changes of the motion by extensions, the latest of each kind.
 #[derive(Default)]
 pub(super) struct KeptChanges {
     changes: Vec<Change>,
@@ -32,14 +32,14 @@ pub(super) struct KeptChanges {
 
 struct Change {
     extension: Extension,
-    /// Lowest harmonic of each coordinate before.
+    /// Lowest harmonic of each coordinate before the extension.
     lowest: Vec<Complex64>,
-    /// Packed in the extended harmonics, in the unit of the extended model.
+    /// Packed change of the motion in the extended harmonics, in the unit of the extended model.
     moved: Vec<f64>,
 }
 
 impl KeptChanges {
-    /// A packed motion with the guess for its change; `None` where none is known.
+    /// A packed motion plus the guess for its change; `None` where no change is known.
     pub fn guess(&self, extension: Extension, set: &HarmonicSet, motion: &[f64]) -> Result<Option<Vec<f64>>> {
         let Some(known) = self.changes.iter().find(|known| known.extension == extension) else {
             return Ok(None);
@@ -69,7 +69,7 @@ impl KeptChanges {
         Ok(Some(guess))
     }
 
-    /// Keeps the change from one packed motion to another.
+    /// Keeps the change between two packed motions.
     pub fn keep(&mut self, extension: Extension, set: &HarmonicSet, (from, to): (&[f64], &[f64])) -> Result<()> {
         let Some(lowest) = lowest(set) else { return Ok(()) };
         let mut known = match self.changes.iter().position(|known| known.extension == extension) {

@@ -14,26 +14,26 @@ const STEADY: f64 = 0.25;
 /// Kind: tuned; measured on: not recorded.
 const SURE: (f64, f64) = (0.5, 0.6);
 
-/// Ratio of the whole change of the response to that of the first extension.
+/// Ratio of the whole change of the response to the change by the first extension.
 #[derive(Clone, Copy)]
 struct Ratio {
     value: f64,
-    /// Harmonic of the first extension.
+    /// Highest harmonic of the first extension.
     least: usize,
-    /// Estimates that it serves, and how many of them were made.
+    /// Number of estimates for which the ratio may be used, and how many have used it.
     uses: usize,
     used: usize,
-    /// Whether it is about the one before.
+    /// Whether the ratio is close to the one before.
     steady: bool,
 }
 
-/// The ratio found last.
+/// The ratio found last; `None` before the first one.
 #[derive(Default)]
 pub(super) struct KeptRatio(Option<Ratio>);
 
 impl KeptRatio {
-    /// The ratio found for points with these harmonics, as long as it serves, and the largest error, relative to the tolerance,
-    /// that it tells well enough.
+    /// The ratio for points with these harmonics, as long as it may be used, and the largest error, relative to the
+    /// tolerance, that it estimates well enough.
     pub fn at(&mut self, least: usize) -> Option<(f64, f64)> {
         let ratio = self.0.as_mut()?;
         if ratio.least != least || ratio.used == ratio.uses {
@@ -43,7 +43,7 @@ impl KeptRatio {
         Some((ratio.value, if ratio.steady { SURE.1 } else { SURE.0 }))
     }
 
-    /// Keeps a ratio for the following estimates: for more of them where it is about the one before.
+    /// Keeps a ratio for the following estimates; for more of them where it is close to the one before.
     pub fn note(&mut self, least: usize, value: f64) {
         let before = self.0.filter(|before| before.least == least);
         let steady = before.filter(|before| (value / before.value - 1.0).abs() <= STEADY);

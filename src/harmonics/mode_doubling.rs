@@ -10,9 +10,9 @@ use crate::harmonics::estimate::Estimate;
 use crate::harmonics::kept_ratio::KeptRatio;
 use num_complex::Complex64;
 
-/// Frequency and damping ratio of a point and of its extensions.
+/// Frequency and damping ratio of a point and of its extensions to more harmonics.
 pub(super) struct ModeSeries {
-    /// Those of the point, and the unit of the damping ratio.
+    /// Frequency and damping ratio of the point, and the unit of the damping ratio.
     omega: f64,
     damping: f64,
     unit: f64,
@@ -20,12 +20,12 @@ pub(super) struct ModeSeries {
     of: [Doubling; 2],
 }
 
-/// Ratios of the whole changes to the first ones that were found before.
+/// Ratios of whole change to first change, found before: for frequency and damping ratio.
 #[derive(Default)]
 pub(super) struct ModeRatios([KeptRatio; 2]);
 
 impl ModeSeries {
-    /// A point, the unit of its damping ratio, and the tolerance of both.
+    /// Starts with a point, the unit of its damping ratio, and the tolerance of both numbers.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -40,7 +40,7 @@ impl ModeSeries {
         })
     }
 
-    /// Adds the next extension.
+    /// Adds frequency and damping ratio of the next extension.
     pub fn add(&mut self, estimate: &Estimate) {
         let (omega, damping) = (estimate.corrected.omega, estimate.corrected.damping);
         // A change across 1 leaves the size to which it is relative.
@@ -49,34 +49,34 @@ impl ModeSeries {
         self.of[1].add(&across((damping - self.damping) / self.unit));
     }
 
-    /// Number of extensions.
+    /// Number of extensions added.
     pub fn extensions(&self) -> usize {
         self.of[0].extensions()
     }
 
-    /// Whether both have settled, or one of them does not matter.
+    /// Whether frequency and damping ratio have settled, or the one that has not does not matter.
     pub fn has_settled(&self) -> bool {
         self.of
             .iter()
             .all(|of| of.has_settled() || of.is_harmless(self.tolerance))
     }
 
-    /// Whether both are known well enough where no further extension is possible.
+    /// Whether both numbers are known well enough if no further extension is possible.
     pub fn suffices(&self) -> bool {
         self.of.iter().all(|of| of.suffices() || of.is_harmless(self.tolerance))
     }
 
-    /// Whether one of them misses the tolerance: a further extension would not change what follows.
+    /// Whether one number surely misses the tolerance: a further extension would not change what follows.
     pub fn misses(&self) -> bool {
         self.suffices() && self.of.iter().any(|of| of.misses(self.tolerance))
     }
 
-    /// Whether both meet the tolerance with all that may be missing.
+    /// Whether both numbers meet the tolerance with all that may be missing.
     pub fn is_harmless(&self) -> bool {
         self.of.iter().all(|of| of.is_harmless(self.tolerance))
     }
 
-    /// The estimate of the last extension with the changes that are missing.
+    /// The estimate of the last extension, with the predicted missing changes added.
     pub fn completed(&self, mut estimate: Estimate) -> Estimate {
         let [of_frequency, of_damping] = &self.of;
         let whole = |of: &Doubling| {
@@ -94,7 +94,8 @@ impl ModeSeries {
         estimate
     }
 
-    /// The estimate of the first extension with ratios found before, where it meets the tolerance surely.
+    /// The estimate of the first extension by the ratios found before, where it surely meets the tolerance; else
+    /// `None`.
     pub fn scaled(&self, ratios: &mut ModeRatios, least: usize, estimate: &Estimate) -> Option<Estimate> {
         let mut errors = [0.0; 2];
         for ((error, of), kept) in errors.iter_mut().zip(&self.of).zip(&mut ratios.0) {
@@ -111,7 +112,7 @@ impl ModeSeries {
         })
     }
 
-    /// Keeps the ratios for the following estimates.
+    /// Keeps the ratios of both numbers for the following estimates.
     pub fn note(&self, ratios: &mut ModeRatios, least: usize) {
         for (kept, of) in ratios.0.iter_mut().zip(&self.of) {
             let ratio = if of.suffices() {

@@ -61,36 +61,36 @@ pub struct ModeEstimator<'a> {
     models: &'a ModelCache,
     waves: &'a SharedWaves,
     cutoff: Option<CutoffHarmonic>,
-    /// The problems extended last, with their slots in the cache.
+    /// Extended problems of the last estimates, with their slots in the cache.
     extended: Vec<(usize, Box<ExtendedSystem<Epmc<'a>>>)>,
     ratios: ModeRatios,
 }
 
-/// A point of a mode: log₁₀ of its amplitude, its damping ratio, and the size to which the error of that is relative.
+/// State of a point of a mode beside its motions.
 #[derive(Clone, Copy)]
 pub struct ModeState {
     /// log₁₀ of the amplitude.
     pub log10_amplitude: f64,
-    /// Damping ratio.
+    /// Damping ratio of the mode.
     pub damping: f64,
-    /// Size to which its error is relative.
+    /// Size to which the error of the damping ratio is relative.
     pub damping_unit: f64,
 }
 
-/// How far a point is extended.
+/// One extension of a point, and its purpose.
 #[derive(Clone, Copy)]
 struct Stage {
-    /// The highest harmonic.
+    /// Highest harmonic of the extended problem.
     highest: usize,
-    /// Whether the structure may be compliant beyond it, where the problem would be too large.
+    /// Whether the structure may be compliant beyond the highest harmonic, where the problem would be too large.
     short: bool,
-    /// Whether this is one of several extensions, each of which ends as soon as frequency and damping ratio have converged.
+    /// Whether this is one of several extensions, each of which ends once frequency and damping ratio have converged.
     by_doubling: bool,
 }
 
 impl<'a> ModeEstimator<'a> {
-    /// For points of the mode that starts from `linear`, on the wave of the model's engine order, observing
-    /// degree of freedom `response`.
+    /// An estimator for points of the mode that starts from `linear`, on the wave of the model's engine order, with
+    /// the response degree of freedom `response`.
     #[must_use]
     pub fn new(
         (model, options): (&'a Model, &SolverOptions),
@@ -129,7 +129,7 @@ impl<'a> ModeEstimator<'a> {
         or_unknown(found, solved, state.damping)
     }
 
-    /// The model with harmonics up to one at least, and its slot; `None` where there is none.
+    /// A resolution with at least the harmonics up to `highest`, and its slot; `None` where there is none.
     fn model_with(&self, highest: usize) -> Result<Option<(usize, &'a Resolution)>> {
         let slot = self.models.slot_with(highest);
         if slot == self.models.slots() {
@@ -183,7 +183,7 @@ impl<'a> ModeEstimator<'a> {
         Ok(self.extend_to(solved, None, state, stage, work)?.0)
     }
 
-    /// The highest harmonic to which the work suffices to extend a point.
+    /// Highest harmonic to which the allowed work can extend a point.
     fn affordable(&self, solved: &Solved<'_>, work: &Work) -> usize {
         work.highest(
             (solved.condensed, usize::MAX),
@@ -193,9 +193,9 @@ impl<'a> ModeEstimator<'a> {
         )
     }
 
-    /// Extends to twice the harmonics, to four times, and on: up to the cut-off harmonic, or until the next changes of frequency and
-    /// damping ratio, as the last two predict them, are small shares of the whole ones. Where the structure is compliant in many
-    /// harmonics these need few of them.
+    /// Extends to twice the harmonics, to four times, and on, until the cut-off harmonic is reached or the next
+    /// changes of frequency and damping ratio, predicted by the last two, are small shares of the whole ones. Where
+    /// the structure is compliant in many harmonics, frequency and damping ratio need few of them.
     #[inline(never)]
     fn extend_by_doubling(
         &mut self,
@@ -309,7 +309,7 @@ impl<'a> ModeEstimator<'a> {
         Ok((found?, left))
     }
 
-    /// The kept problem of a slot.
+    /// Index of the kept extended problem of a slot.
     fn kept(&self, slot: usize) -> Option<usize> {
         self.extended.iter().position(|(kept, _)| *kept == slot)
     }

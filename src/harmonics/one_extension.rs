@@ -20,25 +20,26 @@ use num_complex::Complex64;
 /// Kind: tuned; measured on: not recorded.
 const CLOSER: f64 = 0.5;
 
-/// The harmonics to which a point is extended.
+/// Harmonics to which a point is extended, and the purpose of the extension.
 #[derive(Clone, Copy)]
 pub(super) struct Extent {
     /// Highest harmonic of the core, in which the structure is compliant.
     pub core: usize,
-    /// Highest harmonic of all.
+    /// Highest harmonic of the extended problem.
     pub highest: usize,
-    /// The least one to which a point may be extended.
+    /// Lowest harmonic up to which a point must be extended.
     pub least: usize,
-    /// Whether a short first step suffices, as where the structure is compliant in none of the harmonics that the point omits.
+    /// Whether a short first step is accepted, as where the structure is compliant in none of the harmonics that the
+    /// point omits.
     pub first_step: FirstStep,
     /// Whether the structure may be compliant beyond the core, where the problem would be too large.
     pub short: bool,
-    /// Whether this is one of several extensions, each of which ends as soon as the response has converged.
+    /// Whether this is one of several extensions, each of which ends once the response has converged.
     pub by_doubling: bool,
 }
 
-/// Extends a point, or a solution of it with fewer harmonics, with a system of a slot of the cache; `None` where some evaluation or
-/// matrix fails, or the work does not suffice.
+/// Extends a point, or a solution of it with fewer harmonics, with the system of a slot of the cache; `None` where an
+/// evaluation or a matrix fails, or the work does not suffice.
 pub(super) fn extend_once(
     system: &mut ExtendedSystem<HarmonicBalance<'_>>,
     condensed: &Condensed,
@@ -151,7 +152,8 @@ pub(super) fn extend_once(
     }))
 }
 
-/// The solution of the extended problem from a guess, where that is closer, or else from the point; `None` where it is not found.
+/// The solution of the extended problem, from the guess if its residual is smaller, else from the point; `None` where
+/// none is found.
 fn extended_from<'p>(
     system: &mut ExtendedSystem<HarmonicBalance<'p>>,
     (before, guess): (&[f64], Option<&[f64]>),
@@ -174,17 +176,17 @@ fn extended_from<'p>(
     extend(system, (before, before), &enough, first_step, interrupt)
 }
 
-/// The responses that were asked for with more harmonics.
+/// The requested responses with more harmonics, and their errors.
 struct Watched {
     values: Vec<Complex64>,
-    /// Relative errors of the point, with what may still be missing.
+    /// Relative error of each response of the point, with the part that may still be missing.
     errors: Vec<f64>,
-    /// The largest one, or that of the norm.
+    /// Largest relative error, or that of the norm of all responses.
     error: f64,
 }
 
-/// Reads the responses at the corrected solution Z + δ, in a unit of this length; their errors are a multiple of their changes, and
-/// what is missing besides.
+/// Reads the responses at the corrected solution Z + δ, in the unit `length`. Their errors are a multiple of their
+/// changes, plus a given term.
 fn watched(
     system: &mut ExtendedSystem<HarmonicBalance<'_>>,
     solved: &Solved<'_>,

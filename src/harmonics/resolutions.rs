@@ -12,19 +12,19 @@ use crate::options::SolverOptions;
 /// Kind: tuned; measured on: not recorded.
 const RESOLUTIONS_MOST_KEPT: usize = 600;
 
-/// Equations of type E, one for each resolution.
+/// Equations of type E, one for each resolution in use.
 pub(crate) struct Resolutions<'a, E> {
     pub levels: &'a HarmonicLevels<'a>,
     /// Equations of the current resolution.
     pub current: Box<E>,
     others: Vec<Option<Box<E>>>,
     index: usize,
-    /// The resolution with the most harmonics among the points recorded.
+    /// Highest resolution, by its harmonics, among the points recorded.
     highest: usize,
 }
 
 impl<'a, E> Resolutions<'a, E> {
-    /// Equations of a first resolution.
+    /// Starts with the equations of a first resolution.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -42,12 +42,13 @@ impl<'a, E> Resolutions<'a, E> {
         })
     }
 
-    /// The current resolution.
+    /// Index of the current resolution.
     pub fn index(&self) -> usize {
         self.index
     }
 
-    /// Makes another resolution the current one. `make` creates its equations unless they are stored: small ones are.
+    /// Makes another resolution the current one. `make` creates its equations, unless they are stored, as small ones
+    /// are.
     ///
     /// # Errors
     /// Those of condensing the model and of `make`.
@@ -73,7 +74,8 @@ impl<'a, E> Resolutions<'a, E> {
         self.highest = self.highest.max(self.index);
     }
 
-    /// The parts that were removed from the problem with the most harmonics; `first` are those of the first one.
+    /// The parts that the condensation removed, for the resolution with the most harmonics; `first` describes the
+    /// initial resolution.
     ///
     /// # Errors
     /// Those of condensing the model.

@@ -5,7 +5,8 @@ use crate::continuation::Point;
 use crate::error::{Result, try_vec};
 use num_complex::Complex64;
 
-/// Unknowns in other harmonics, with the `others` numbers after the motions; motions are multiplied by a factor.
+/// Unknowns `v` in the harmonics of another condensed model, with the `others` numbers after the motions unchanged;
+/// motions are multiplied by a factor.
 pub(crate) fn transferred(from: &Condensed, to: &Condensed, v: &[f64], others: usize, factor: f64) -> Result<Vec<f64>> {
     let motions = to.unknowns();
     let mut found = try_vec(motions + others, 0.0, "the harmonics")?;

@@ -71,16 +71,16 @@ const OF_FACTORS: f64 = 0.2;
 /// Sizes of a problem from which its work follows.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sizes {
-    /// Relative coordinates.
+    /// Number of relative coordinates.
     coordinates: f64,
-    /// Carried harmonics.
+    /// Number of carried harmonics.
     harmonics: f64,
     /// Length of a packed signal.
     packed: f64,
-    /// Blocks ∂f/∂y of all laws, and directions.
+    /// Number of blocks ∂f/∂y of all laws; and number of directions.
     blocks: f64,
     directions: f64,
-    /// Operations of sampled laws in one evaluation.
+    /// Operations for the sampled laws in one evaluation.
     sampling: f64,
     /// Numbers in the tables of a sampled law.
     tables: f64,
@@ -95,7 +95,7 @@ impl Sizes {
         Self::extended(condensed, highest, samples)
     }
 
-    /// The sizes of the same model with the harmonics up to another one.
+    /// The sizes of the model with the harmonics up to `highest`.
     pub fn extended(condensed: &Condensed, highest: usize, samples: usize) -> Self {
         let set = condensed.set();
         let (base, step) = (set.base(), set.base() * set.stride());
@@ -126,7 +126,7 @@ impl Sizes {
         }
     }
 
-    /// The same sizes where the flexibility is made from modes.
+    /// Returns the sizes for a flexibility that is computed from modes.
     pub fn with_modes(mut self, condensed: &Condensed) -> Self {
         let outputs = self.coordinates + 1.0;
         self.flexibility = OF_FACTORS * 8.0 * condensed.ndof() as f64 * outputs * outputs;
@@ -138,17 +138,17 @@ impl Sizes {
         self.packed
     }
 
-    /// Carried harmonics.
+    /// Number of carried harmonics.
     pub fn harmonics(&self) -> usize {
         self.harmonics as usize
     }
 
-    /// Unknowns of the block between the first `packed` numbers of each coordinate.
+    /// Number of unknowns in the block of the first `packed` numbers of each coordinate.
     pub fn order(&self, packed: f64) -> f64 {
         self.coordinates * packed
     }
 
-    /// Unknowns.
+    /// Number of unknowns of the whole problem.
     pub fn unknowns(&self) -> f64 {
         self.coordinates * self.packed
     }
@@ -162,8 +162,8 @@ impl Sizes {
             + 8.0 * self.coordinates * self.coordinates * self.harmonics
     }
 
-    /// Operations of the factors of the block between the first `packed` numbers of each coordinate, and of those of
-    /// `pairs` numbers by themselves.
+    /// Operations to factor the block of the first `packed` numbers of each coordinate, and `pairs` pairs of numbers
+    /// one by one.
     pub fn factors(&self, packed: f64, pairs: f64) -> f64 {
         let order = self.coordinates * packed;
         let fill = 8.0 * self.blocks * self.coordinates * packed * packed;
@@ -177,13 +177,13 @@ impl Sizes {
         fill + OF_FACTORS * 0.5 * sectors * 8.0 / 3.0 * order.powi(3)
     }
 
-    /// Operations of one product of an iteration with such factors.
+    /// Operations of one product of an iteration preconditioned by the waves of a wheel.
     pub fn product_of_waves(&self, sectors: usize) -> f64 {
         let (sectors, order) = (sectors as f64, self.unknowns() / sectors as f64);
         self.product(0.0, 0.0) + 0.5 * sectors * 8.0 * order * order + 8.0 * sectors * self.unknowns()
     }
 
-    /// Operations of one product of an iteration with such a preconditioner.
+    /// Operations of one product of an iteration preconditioned by a block and single pairs, as counted by `factors`.
     pub fn product(&self, packed: f64, pairs: f64) -> f64 {
         let order = self.coordinates * packed;
         let couple = 8.0 * self.coordinates * self.coordinates * (self.harmonics + pairs);
@@ -214,9 +214,9 @@ impl Sizes {
     }
 }
 
-/// Bytes that the equations of a point need with the harmonics up to one, Newton's matrix factored directly: those of
-/// [`Sizes::bytes`], the Jacobian of the law with the most directions with its derivatives, and the samples of a law at two
-/// numbers of them.
+/// Bytes that the equations of a point need with the harmonics up to `highest` if Newton's matrix is factored
+/// directly: those of [`Sizes::bytes`], the Jacobian of the law with the most directions with its derivatives, and
+/// the samples of a law at two numbers of them.
 fn bytes_of_point(condensed: &Condensed, highest: usize, samples: usize) -> usize {
     let sizes = Sizes::extended(condensed, highest, samples);
     let sampling = (samples, condensed.refinement());
@@ -231,12 +231,12 @@ fn bytes_of_point(condensed: &Condensed, highest: usize, samples: usize) -> usiz
     (sizes.bytes(sizes.packed, 0.0) + largest) as usize
 }
 
-/// Whether a limit of bytes, 0: none, allows the equations of a point with the harmonics up to one.
+/// Whether a `limit` of bytes (0: none) allows the equations of a point with the harmonics up to `highest`.
 pub(crate) fn is_allowed(limit: usize, condensed: &Condensed, highest: usize, samples: usize) -> bool {
     limit == 0 || bytes_of_point(condensed, highest, samples) <= limit
 }
 
-/// Refuses the equations of a point that a limit of bytes does not allow; 0 is no limit.
+/// Refuses the equations of a point that would exceed a `limit` of bytes (0: none).
 ///
 /// # Errors
 /// `OutOfMemory` with the need and the limit.
@@ -244,7 +244,7 @@ pub(crate) fn allow_point(limit: usize, condensed: &Condensed, highest: usize, s
     within(limit, bytes_of_point(condensed, highest, samples))
 }
 
-/// The work that an estimate has left.
+/// Operations and bytes that an estimate may still use.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Work {
     operations: f64,
@@ -252,8 +252,8 @@ pub(super) struct Work {
 }
 
 impl Work {
-    /// The work for a point of these sizes, whose solution without a neighbour takes so many Newton iterations, with at
-    /// most the bytes of a limit; 0 is no limit.
+    /// The work allowed for a point of these sizes whose solution without a neighbour takes `iterations` Newton
+    /// iterations, with at most `limit` bytes (0: no limit).
     pub fn of_point(point: &Sizes, iterations: usize, limit: usize) -> Self {
         let limit = if limit == 0 { f64::INFINITY } else { limit as f64 };
         Self {
@@ -263,12 +263,12 @@ impl Work {
         }
     }
 
-    /// Leaves at most these operations.
+    /// Reduces the remaining operations to at most the given number.
     pub fn limit(&mut self, operations: f64) {
         self.operations = self.operations.min(operations);
     }
 
-    /// Whether a problem of these bytes fits.
+    /// Whether a problem of so many `bytes` is within the limit.
     pub fn fits(&self, bytes: f64) -> bool {
         bytes <= self.bytes
     }
@@ -303,7 +303,7 @@ impl Work {
         low * base
     }
 
-    /// Takes operations; `false`, and nothing taken, where fewer are left.
+    /// Subtracts operations from the rest; `false`, and no change, where fewer are left.
     pub fn spend(&mut self, operations: f64) -> bool {
         let affordable = operations <= self.operations;
         if affordable {
@@ -312,7 +312,7 @@ impl Work {
         affordable
     }
 
-    /// The operations left.
+    /// Number of operations left.
     pub fn left(&self) -> f64 {
         self.operations
     }

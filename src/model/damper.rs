@@ -30,7 +30,7 @@ pub struct DamperFace {
     pub sector_offset: i64,
     /// Angle φ between the platform and the direction along the wheel in radians, negative on the side of the previous sector.
     pub angle: f64,
-    /// Angle in radians by which the axes of `dofs` are turned about z against those of the damper.
+    /// Angle in radians by which the axes of `dofs` are turned about z against the axes of the damper.
     pub turn: f64,
     /// Middle of the face from the centre of mass; without effect on a cylinder.
     pub centre: [f64; 3],
@@ -40,9 +40,9 @@ pub struct DamperFace {
     pub points: [usize; 2],
     /// Tangential and normal stiffness of the whole face.
     pub stiffness: [f64; 2],
-    /// Friction coefficient.
+    /// Friction coefficient of the face.
     pub mu: f64,
-    /// Play along the normal.
+    /// Gap along the normal between face and platform.
     pub gap: f64,
 }
 
@@ -63,14 +63,15 @@ impl Default for DamperFace {
     }
 }
 
-/// A damper.
+/// A damper under the platforms of blades, as a rigid body.
 #[derive(Clone, Copy, Debug)]
 pub struct Damper<'a> {
     /// 3: motions along x and y and the roll about z; 6: three translations and the rotations about x, y and z.
     pub motions: usize,
-    /// Mass.
+    /// Mass of the damper.
     pub mass: f64,
-    /// Moments of inertia about x, y and z through the centre of mass; zeros: those of a solid cylinder of radius and length.
+    /// Moments of inertia about x, y and z through the centre of mass; zeros: the values of a solid cylinder of this
+    /// radius and length.
     pub inertia: [f64; 3],
     /// Radius of a cylinder, whose faces are lines; 0: the faces have their centres and widths.
     pub radius: f64,
@@ -80,9 +81,9 @@ pub struct Damper<'a> {
     pub orbit: f64,
     /// Stiffness between the ground and each translation, and each rotation.
     pub support: [f64; 2],
-    /// Damping constants of the same.
+    /// Damping constants between the ground and each translation, and each rotation.
     pub support_damping: [f64; 2],
-    /// Faces.
+    /// Faces of the damper on platforms.
     pub faces: &'a [DamperFace],
 }
 
@@ -105,16 +106,17 @@ impl Default for Damper<'_> {
 /// Degrees of freedom and contacts of a damper in its model.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DamperPlace {
-    /// Its motions, behind all others: x, y, roll, or x, y, z and the rotations about them.
+    /// Degrees of freedom of the damper's motions, after all others: x, y, roll; or x, y, z and the rotations about
+    /// these.
     pub dofs: Range<usize>,
-    /// Its contacts, face after face, across z and then along it.
+    /// Indices of the damper's contacts: face after face, points across z first, then along it.
     pub contacts: Range<usize>,
 }
 
 impl Model {
-    /// Adds a damper under platforms: a rigid body whose motions are new degrees of freedom behind all others, with the contacts of
-    /// its faces and its centrifugal force. Matrices that are set later have the new size. In a cyclic model each sector has
-    /// one. Rayleigh damping applies to its mass and support as well.
+    /// Adds a damper under platforms: a rigid body whose motions are new degrees of freedom after all others, with
+    /// the contacts of its faces and its centrifugal force. Matrices that are set later have the new size. In a
+    /// cyclic model each sector has one. Rayleigh damping applies to its mass and support as well.
     ///
     /// # Errors
     /// `Argument`, `NotFinite` or `Index`, naming the field; `Dimension` for too many degrees of freedom. Nothing has then changed.

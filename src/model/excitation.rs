@@ -5,18 +5,19 @@ use crate::model::matrices::speed::Speed;
 use crate::options::MAX_HARMONIC;
 use num_complex::Complex64;
 
-/// One harmonic force: Re(value·e^{i·harmonic·ωt}) on `dof`.
+/// A harmonic force Re(value·e^{i·harmonic·ωt}) on `dof`.
 #[derive(Clone, Copy, Debug)]
 pub struct Force {
-    /// Degree of freedom.
+    /// Degree of freedom on which the force acts.
     pub dof: usize,
     /// Harmonic number; 0 is a constant force.
     pub harmonic: usize,
-    /// Complex amplitude, peak; over ω² if [`Self::per_omega2`].
+    /// Complex amplitude (peak value); divided by ω² if [`Self::per_omega2`].
     pub value: Complex64,
-    /// Whether the force is that of an unbalance, which grows with the square of the frequency ω of the response.
+    /// Whether the force is caused by an unbalance, and grows with the square of the frequency ω of the response.
     pub per_omega2: bool,
-    /// Force over Ω² of a constant force that follows the speed of rotation, of which `value` is that at the present speed; else 0.
+    /// Force over Ω² of a constant force that follows the speed of rotation; `value` is then the force at the present
+    /// speed. 0 for other forces.
     pub per_speed2: f64,
 }
 
@@ -32,7 +33,7 @@ impl Force {
     }
 }
 
-/// All forces on a model.
+/// All forces on the degrees of freedom of a model.
 #[derive(Clone, Debug, Default)]
 pub struct Excitation {
     forces: Vec<Force>,
@@ -89,7 +90,7 @@ impl Excitation {
         self.forces.iter().any(|force| force.per_speed2 != 0.0)
     }
 
-    /// Adds a force that was checked before it was saved, again.
+    /// Adds a force again that was checked before it was saved.
     pub(super) fn restore(&mut self, ndof: usize, force: Force) -> Result<()> {
         self.add(ndof, force.dof, force.harmonic, force.value)?;
         if let Some(last) = self.forces.last_mut() {
@@ -98,7 +99,7 @@ impl Excitation {
         Ok(())
     }
 
-    /// Reads the force over Ω² of each force.
+    /// Reads, from saved data, the force over Ω² of each force.
     pub(super) fn load_centrifugal(&mut self, mut next: impl FnMut() -> Result<f64>) -> Result<()> {
         for (i, force) in self.forces.iter_mut().enumerate() {
             force.per_speed2 = next()?;
@@ -125,7 +126,7 @@ impl Excitation {
         try_extend(&mut self.forces, &forces.map(force), "the forces")
     }
 
-    /// Multiplies all forces.
+    /// Multiplies all forces by a factor.
     pub(super) fn scale(&mut self, factor: f64) {
         for force in &mut self.forces {
             force.value *= factor;
@@ -149,7 +150,7 @@ impl Excitation {
         }
     }
 
-    /// Moves forces to `periods` times their harmonic, of a frequency that is smaller by that factor.
+    /// Moves the forces to `periods` times their harmonic, for a fundamental frequency that is lower by this factor.
     pub(super) fn stretch(&mut self, periods: usize) -> Result<()> {
         for force in &self.forces {
             if force.harmonic.saturating_mul(periods) > MAX_HARMONIC {
@@ -183,20 +184,20 @@ impl Excitation {
         self.forces.iter().any(|f| f.per_omega2 && f.value != Complex64::ZERO)
     }
 
-    /// Whether one of a harmonic does.
+    /// Whether a force in this harmonic grows with ω².
     pub fn has_unbalance_in(&self, harmonic: usize) -> bool {
         let mut own = self.forces.iter().filter(|f| f.harmonic == harmonic);
         own.any(|f| f.per_omega2 && f.value != Complex64::ZERO)
     }
 
-    /// A copy, allocated fallibly.
+    /// A copy that returns an error if memory is short.
     pub(super) fn try_clone(&self) -> Result<Self> {
         let mut copy = Self::default();
         try_extend(&mut copy.forces, &self.forces, "the forces")?;
         Ok(copy)
     }
 
-    /// Removes all forces.
+    /// Removes all forces of the model.
     pub(super) fn clear(&mut self) {
         self.forces.clear();
     }

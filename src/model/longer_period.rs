@@ -5,9 +5,9 @@ use crate::model::Model;
 use crate::model::matrices::speed::Speed;
 
 impl Model {
-    /// A copy whose fundamental is that of motions with `periods` times the period: forces in harmonic h act in harmonic
-    /// `periods`·h, a speed that is tied to the frequency and unbalances stay what they are. The engine order is one under
-    /// which the forces keep their wave.
+    /// A copy for motions with `periods` times the period: forces in harmonic h act in harmonic `periods`·h, while
+    /// unbalances and a speed tied to the frequency are kept. The engine order is chosen such that the forces keep
+    /// their wave.
     ///
     /// # Errors
     /// `Argument` for `periods` = 0, or above the highest harmonic number; `Unsupported` where no wave of the sectors has the

@@ -15,10 +15,10 @@ use crate::model::matrices::spring::Spring;
 use crate::model::matrices::structure::{MatrixKind, Structure};
 use num_complex::Complex64;
 
-/// Purpose of the memory, named in an error.
+/// Name of the memory in an error.
 const CONTACTS: &str = "the contacts";
 
-/// A copy, allocated fallibly.
+/// A copy of a contact that returns an error if memory is short.
 pub(crate) fn copy(contact: &Contact) -> Result<Contact> {
     Ok(Contact {
         kind: contact.kind.clone(),
@@ -34,7 +34,7 @@ pub(crate) fn copy(contact: &Contact) -> Result<Contact> {
 #[derive(Clone, Debug)]
 pub struct Model {
     pub(super) structure: Structure,
-    /// Data prepared for these matrices.
+    /// Reduced waves that were prepared for these matrices.
     pub(super) kept: KeptWaves,
     pub(super) contacts: Vec<Contact>,
     pub(super) springs: Vec<Spring>,
@@ -52,7 +52,7 @@ impl Model {
         Self::cyclic(ndof, 1)
     }
 
-    /// A sector of `ndof` degrees of freedom, one of `sectors`, under engine order 0.
+    /// A cyclic model with `ndof` degrees of freedom a sector and `sectors` sectors, under engine order 0.
     ///
     /// # Errors
     /// `Dimension` for `ndof`, `Argument` for `sectors` out of range.
@@ -85,8 +85,8 @@ impl Model {
         })
     }
 
-    /// Fixes degrees of freedom: they move no more, whatever matrices, contacts and forces say. Numbers of degrees
-    /// of freedom stay as they are. Those on both faces of a sector are fixed together.
+    /// Fixes degrees of freedom: they no longer move, whatever matrices, contacts and forces say. The numbering is
+    /// kept. Images of each other on the two faces of a sector must be fixed together.
     ///
     /// # Errors
     /// `Index`; `Argument` for a pair of the faces that is fixed on one side only, if all degrees of freedom were
@@ -111,20 +111,20 @@ impl Model {
         checked
     }
 
-    /// Adds degrees of freedom without matrices behind all others.
+    /// Adds degrees of freedom without matrices after all others.
     pub(super) fn extend(&mut self, count: usize) -> Result<()> {
         self.structure = self.structure.extended(count)?;
         self.kept = KeptWaves::default();
         Ok(())
     }
 
-    /// The structure for a change of its matrices: nothing that was prepared for them is kept.
+    /// The structure, to change its matrices; reduced waves that were prepared for the old ones are dropped.
     pub(super) fn changed_structure(&mut self) -> &mut Structure {
         self.kept = KeptWaves::default();
         &mut self.structure
     }
 
-    /// Data prepared for the matrices of the model.
+    /// Reduced waves that were prepared for the matrices of the model.
     pub(crate) fn kept(&self) -> &KeptWaves {
         &self.kept
     }
@@ -195,8 +195,8 @@ impl Model {
         self.changed_structure().set_coupling_previous(which, to_previous)
     }
 
-    /// Sets the matrix of the wave in which sector s + 1 lags by 2π·diameter/N; `diameter` counts modulo N, and a negative one
-    /// travels the other way. A wave of which only the other sense was given has the conjugate of that.
+    /// Sets the matrix of the wave in which sector s + 1 lags by 2π·diameter/N; `diameter` counts modulo N, and a
+    /// negative one travels the other way. If only one sense of a wave was given, the other has the conjugate matrix.
     ///
     /// # Errors
     /// As [`Self::set_matrix`]; `Argument` for a diameter of a plain structure or a matrix that was given by sector blocks.
@@ -209,7 +209,7 @@ impl Model {
         self.structure.set_wave(engine_order);
     }
 
-    /// Adds a contact and returns its number. Equal contacts add up.
+    /// Adds a contact and returns its index. Equal contacts add up.
     ///
     /// # Errors
     /// `Index` for a degree of freedom out of range, `Argument` for a contact of a degree of
@@ -221,8 +221,8 @@ impl Model {
         Ok(self.contacts.len() - 1)
     }
 
-    /// Adds many contacts and returns the number of the first; the others follow in order. All of
-    /// them are checked before any is added.
+    /// Adds many contacts and returns the index of the first; the others follow in order. All are checked before any
+    /// is added.
     ///
     /// # Errors
     /// As [`Self::add_contact`], naming the position in the list.
@@ -245,7 +245,7 @@ impl Model {
         Ok(first)
     }
 
-    /// Adds the node pairs of a patch as contacts with consecutive numbers, and returns the first. All of them are
+    /// Adds the node pairs of a patch as contacts with consecutive indices, and returns the first index. All are
     /// checked before any is added.
     ///
     /// # Errors
@@ -259,14 +259,14 @@ impl Model {
         self.append(contacts)
     }
 
-    /// Adds checked contacts and returns the number of the first.
+    /// Adds checked contacts and returns the index of the first.
     fn append(&mut self, mut contacts: Vec<Contact>) -> Result<usize> {
         let first = self.room_for(contacts.len())?;
         self.contacts.append(&mut contacts);
         Ok(first)
     }
 
-    /// Room for more contacts; returns the number of the first of them.
+    /// Reserves memory for further contacts; returns the index of the first of them.
     fn room_for(&mut self, contacts: usize) -> Result<usize> {
         self.contacts
             .try_reserve(contacts)
@@ -274,8 +274,8 @@ impl Model {
         Ok(self.contacts.len())
     }
 
-    /// Adds an Iwan joint between the sides of `between` as `elements` Jenkins contacts with consecutive numbers,
-    /// and returns the first.
+    /// Adds an Iwan joint between the sides of `between` as `elements` Jenkins contacts with consecutive indices, and
+    /// returns the first index.
     ///
     /// # Errors
     /// Those of [`Iwan::elements`] and [`Self::add_contact`].
@@ -387,18 +387,18 @@ impl Model {
         self.excitation.add(self.ndof(), dof, harmonic, value)
     }
 
-    /// Removes all forces.
+    /// Removes all forces of the model.
     pub fn clear_forces(&mut self) {
         self.excitation.clear();
     }
 
     /// Adds the forces of one harmonic, times `scale`, to a vector over the independent degrees of freedom. A force
-    /// on the right face acts on the next sector; one on a fixed degree of freedom has no effect.
+    /// on the right face acts on the next sector; a force on a fixed degree of freedom has no effect.
     pub(crate) fn add_forces_to(&self, harmonic: usize, scale: f64, vector: &mut [Complex64]) {
         self.add_to(harmonic, scale, false, vector);
     }
 
-    /// The same for the amplitudes of the forces that grow with ω².
+    /// Adds the amplitudes over ω² of the forces of one harmonic that grow with ω², as `add_forces_to` does.
     pub(crate) fn add_unbalance_to(&self, harmonic: usize, scale: f64, vector: &mut [Complex64]) {
         self.add_to(harmonic, scale, true, vector);
     }
@@ -414,20 +414,20 @@ impl Model {
         }
     }
 
-    /// Degrees of freedom (of one sector), the fixed ones and both faces included.
+    /// Number of degrees of freedom (of one sector), including fixed ones and both faces.
     #[must_use]
     pub fn ndof(&self) -> usize {
         self.structure.degrees().given()
     }
 
-    /// The linear structure.
+    /// The linear structure: matrices, degrees of freedom, speed.
     #[must_use]
     #[doc(hidden)]
     pub fn structure(&self) -> &Structure {
         &self.structure
     }
 
-    /// The same, for the parts of a model.
+    /// The linear structure, for changes by the parts of a model.
     pub(super) fn structure_mut(&mut self) -> &mut Structure {
         &mut self.structure
     }
@@ -444,7 +444,7 @@ impl Model {
         &self.springs
     }
 
-    /// The forces.
+    /// The forces on the model.
     #[must_use]
     #[doc(hidden)]
     pub fn excitation(&self) -> &Excitation {

@@ -14,15 +14,15 @@ use num_complex::Complex64;
 const WATCHED: f64 = 1e-3;
 
 impl Model {
-    /// The forces that are not zero, on degrees of freedom that move.
+    /// Forces that are not zero, on degrees of freedom that are not fixed.
     pub(crate) fn acting_forces(&self) -> impl Iterator<Item = &Force> {
         let degrees = self.structure().degrees();
         let forces = self.excitation().forces().iter();
         forces.filter(|f| f.value != Complex64::ZERO && !degrees.is_fixed(f.dof))
     }
 
-    /// The harmonic whose amplitude is that of the response: the lowest one in which a vibrating force acts that is no trace
-    /// of the largest one; `None` without vibrating forces. An unbalance acts in its harmonic at any size.
+    /// Harmonic whose amplitude is reported as the response: the lowest one with a vibrating force that is not tiny
+    /// against the largest one; `None` without vibrating forces. An unbalance counts at any size.
     pub(crate) fn watched_harmonic(&self) -> Option<usize> {
         let vibrating = || self.acting_forces().filter(|f| f.harmonic > 0);
         let largest = vibrating()
@@ -34,7 +34,7 @@ impl Model {
 }
 
 impl Model {
-    /// For each degree of freedom of the caller whether a contact acts on it.
+    /// For each degree of freedom of the caller, whether a contact acts on it.
     pub(crate) fn felt_by_contacts(&self) -> Result<Vec<bool>> {
         let mut felt = try_vec(self.ndof(), false, "the guess")?;
         for contact in self.contacts() {
@@ -67,7 +67,8 @@ impl Model {
         Ok(())
     }
 
-    /// Rotations on side a are degrees of freedom beside its translations; they need directions.
+    /// Checks the rotations on side a of a contact: they must be degrees of freedom other than its translations, and
+    /// need directions.
     fn check_rigid(&self, contact: &Contact) -> Result<()> {
         let Some(rigid) = contact.rigid else { return Ok(()) };
         if let Some(x) = rigid.arm.iter().chain([&rigid.turn]).find(|x| !x.is_finite()) {
@@ -93,7 +94,7 @@ impl Model {
         Ok(())
     }
 
-    /// Refuses a model without any matrix or spring, and one without mass for an analysis that needs it.
+    /// Refuses a model without any matrix or spring, and a model without mass if the analysis needs it.
     ///
     /// # Errors
     /// `Argument`.
@@ -113,7 +114,7 @@ impl Model {
         Ok(())
     }
 
-    /// A response degree of freedom must exist and may not be fixed.
+    /// Checks a response degree of freedom: it must exist and must not be fixed.
     pub(crate) fn check_response_dof(&self, dof: Option<usize>) -> Result<()> {
         match dof {
             Some(dof) if dof >= self.ndof() => {
@@ -126,7 +127,7 @@ impl Model {
         }
     }
 
-    /// Entry `i` of a list must be a degree of freedom of the model.
+    /// Checks entry `i` of a list: it must be a degree of freedom of the model.
     fn check_dof(&self, list: &str, i: usize, dof: usize) -> Result<()> {
         if dof < self.ndof() {
             return Ok(());
@@ -134,7 +135,7 @@ impl Model {
         fail!(Index, "contact: {list}[{i}] = {dof}, needs 0 .. {}", self.ndof() - 1)
     }
 
-    /// A list must name degrees of freedom of the model, each once.
+    /// Checks a list: it must name degrees of freedom of the model, each once.
     fn check_list(&self, list: &str, dofs: &[usize]) -> Result<()> {
         let mut places = Vec::new();
         for (i, &dof) in dofs.iter().enumerate() {
@@ -149,8 +150,8 @@ impl Model {
         }
     }
 
-    /// Both sides of a contact or spring must exist and differ; `node_b` is the node on side b of a contact with a
-    /// frame.
+    /// Checks both sides of a contact or spring: they must exist and differ; `node_b` is the node on side b of a
+    /// contact with a frame.
     pub(super) fn check_sides(
         &self,
         what: &str,

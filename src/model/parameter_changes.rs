@@ -47,7 +47,7 @@ impl Model {
         Ok(())
     }
 
-    /// Changes a constant of a contact; the normal load is that at rest.
+    /// Changes a constant of a contact; for the normal load, its static value.
     ///
     /// # Errors
     /// `Index` for an unknown contact; `Unsupported` for a constant that the law does not have; those of
@@ -119,7 +119,7 @@ impl Model {
         self.changed_structure().scale_matrix(which, factor)
     }
 
-    /// A copy that keeps bases of its own from now on: what a solve of it prepares, others do not see.
+    /// A copy with its own list of reduced waves: waves prepared for it are not shared with others.
     pub(crate) fn separate_clone(&self) -> Result<Self> {
         let mut copy = self.try_clone()?;
         copy.kept = self.kept.separate()?;
@@ -183,7 +183,7 @@ fn transposed(n: usize, matrix: Option<&KeptMatrix>) -> Result<Option<KeptMatrix
         .transpose()
 }
 
-/// to += factor·a
+/// to ← to + factor·a, for optional matrices of order n.
 fn add(n: usize, to: &mut Option<KeptMatrix>, a: Option<&KeptMatrix>, factor: f64) -> Result<()> {
     let Some(a) = a else { return Ok(()) };
     let scaled = (factor.into(), a, Form::Plain);

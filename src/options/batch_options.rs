@@ -14,12 +14,12 @@ pub struct BatchOptions<'a> {
     pub omega_start: f64,
     /// Last angular frequency; below the first for downward sweeps.
     pub omega_stop: f64,
-    /// Threads, the calling one included, 1 .. 1,024. Their number changes no bit of a result.
+    /// Number of threads, the calling one included, 1 .. 1,024. It changes no bit of a result.
     pub threads: usize,
     /// Whether the branch of each design is kept.
     pub keep: bool,
-    /// Responses that are watched: the first leads the peak of a design, and each has its own. None: the amplitude of the
-    /// response degree of freedom.
+    /// Responses that are watched: the first one defines the peak of a design, and each has its own peak. Empty: the
+    /// amplitude of the response degree of freedom.
     pub responses: &'a [Response<'a>],
 }
 

@@ -10,11 +10,12 @@ pub const CAMPBELL_MOST_FACTORS: usize = 100_000;
 /// Options of resonances in a Campbell diagram.
 #[derive(Clone, Copy, Debug)]
 pub struct CampbellResponseOptions<'a> {
-    /// Angular frequency of the forces over the speed of rotation: the engine order where it is one, above zero.
+    /// Angular frequency of the forces over the speed of rotation, above zero: the engine order where the forces
+    /// belong to one.
     pub engine_order: f64,
     /// Change of the speed per time in a passage, either sign; 0: none.
     pub acceleration: f64,
-    /// Factors on the forces of the model, above zero, each with a resonance of its own.
+    /// Factors on the forces of the model, above zero; each has its own resonance.
     pub force_factors: &'a [f64],
     /// Further factor on the forces, and damping, as for a synthesised response; `compare` has no effect.
     pub synthesis: SynthesisOptions,
@@ -32,7 +33,7 @@ impl Default for CampbellResponseOptions<'_> {
 }
 
 impl CampbellResponseOptions<'_> {
-    /// Checks every field.
+    /// Checks the values of all options.
     ///
     /// # Errors
     /// `Argument`, `NotFinite` or `Dimension`, naming the field, its value and its range.

@@ -12,15 +12,16 @@ const COUNTS: f64 = 1e-6;
 /// harmonics and a mean. Neither follows from forces and laws, so that a guess decides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Content {
-    /// Common divisor of the harmonics above zero; 0: there are none.
+    /// Common divisor of the harmonics above zero; 0: there are no such harmonics.
     pub base: usize,
-    /// Whether the mean or an even multiple of the divisor is among them.
+    /// Whether the mean or an even multiple of the divisor is among the harmonics.
     pub even: bool,
 }
 
 impl Content {
-    /// The harmonics that count of a guess, harmonic after harmonic of a number for each degree of freedom, and the highest of
-    /// them; `counts` tells the degrees of freedom whose motion has an effect, as has the real part of the mean.
+    /// The relevant harmonics of a guess (harmonic after harmonic, one number for each degree of freedom) and the
+    /// highest one; `counts` marks the degrees of freedom whose motion has an effect. The mean counts by its real
+    /// part.
     pub fn of(guess: &[Complex64], counts: &[bool]) -> (Self, usize) {
         let size = |(h, row): (usize, &[Complex64])| {
             let felt = row.iter().zip(counts).filter(|(_, counts)| **counts);
@@ -45,7 +46,7 @@ impl Content {
     }
 }
 
-/// Greatest common divisor.
+/// Greatest common divisor of two numbers.
 pub(crate) fn gcd(a: usize, b: usize) -> usize {
     if b == 0 { a } else { gcd(b, a % b) }
 }

@@ -7,12 +7,12 @@ use crate::options::waves::Waves;
 /// Options of the Floquet multipliers of a point.
 #[derive(Clone, Copy, Debug)]
 pub struct FloquetOptions {
-    /// Perturbations of a cyclic model; a plain structure has one block only.
+    /// Perturbations of a cyclic model that are computed; a plain structure has one block only.
     pub waves: Waves,
-    /// Move the point to the periodic motion in time by shooting first. A motion of harmonic balance is truncated, and
-    /// its multipliers are those of a path that does not quite close.
+    /// Whether to find the periodic motion in time by shooting first. A motion of harmonic balance is truncated, and
+    /// its multipliers belong to a path that does not quite close.
     pub refine: bool,
-    /// See [`TimeOptions::tolerance`](crate::options::TimeOptions::tolerance).
+    /// Tolerance of shooting, as [`TimeOptions::tolerance`](crate::options::TimeOptions::tolerance).
     pub tolerance: f64,
     /// Largest number of periods integrated by shooting.
     pub max_periods: usize,
@@ -35,7 +35,7 @@ impl Default for FloquetOptions {
 }
 
 impl FloquetOptions {
-    /// Checks every field.
+    /// Checks the values of all options.
     ///
     /// # Errors
     /// `Argument`, naming the field, its value and its range.

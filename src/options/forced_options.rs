@@ -126,7 +126,7 @@ impl ForcedOptions<'_> {
     }
 }
 
-/// Refuses a guess whose highest harmonic that counts lies above those of a solver.
+/// Refuses a guess that has relevant harmonics above those of the solver.
 ///
 /// # Errors
 /// `Argument`, naming the option.

@@ -3,11 +3,11 @@
 /// A contact that wears: its worn depth grows per cycle by h′ = αE/A with the work E of a cycle.
 #[derive(Clone, Copy, Debug)]
 pub struct Wear {
-    /// Number of the contact, whose law has a normal load.
+    /// Index of the contact, whose law must have a normal load.
     pub contact: usize,
-    /// α: worn volume per work.
+    /// Wear rate α: worn volume per work.
     pub rate: f64,
-    /// A: area of the contact.
+    /// Area A of the contact.
     pub area: f64,
 }
 
@@ -30,30 +30,31 @@ pub enum LifeFollow<'a> {
     /// The peak of the response, the highest one within the range of angular frequency at the beginning; it is followed as the contacts
     /// wear.
     Peak {
-        /// First angular frequency.
+        /// First angular frequency of the range.
         omega_start: f64,
-        /// Last angular frequency.
+        /// Last angular frequency of the range.
         omega_stop: f64,
     },
 }
 
-/// Options of a life.
+/// Options of a life under wear.
 #[derive(Clone, Copy, Debug)]
 pub struct LifeOptions<'a> {
-    /// Contacts that wear.
+    /// Contacts that wear, with their rates.
     pub wear: &'a [Wear],
-    /// Static stiffness S between the normals of these contacts, n × n, symmetric: their loads are N = N₀ − S h. Empty: the normal
-    /// stiffness of each contact by itself, which its law then has.
+    /// Static stiffness S between the normals of these contacts, n × n, symmetric: their loads are N = N₀ − S h.
+    /// Empty: the normal stiffness of each contact alone, which its law must then have.
     pub stiffness: &'a [f64],
-    /// Vibration.
+    /// Vibration that wears the contacts.
     pub follow: LifeFollow<'a>,
-    /// Cycles at which the state is wanted, in ascending order; the last is the end of the life.
+    /// Numbers of cycles at which the state is requested, in ascending order; the last one is the end of the life.
     pub cycles: &'a [f64],
-    /// Depths worn at the beginning; empty: none.
+    /// Worn depths at the beginning, one for each contact; empty: 0.
     pub worn: &'a [f64],
-    /// Error that is allowed, of the loads relative to the largest load of a contact at the beginning, and of the amplitude.
+    /// Allowed error of the loads, relative to the largest load of a contact at the beginning, and relative error of
+    /// the amplitude.
     pub tolerance: f64,
-    /// Amplitude whose crossing is told; 0: none.
+    /// Amplitude whose crossing is reported as an event; 0: none.
     pub limit: f64,
     /// Largest number of steps.
     pub most_steps: usize,

@@ -12,11 +12,11 @@ pub const MISSION_MOST: usize = 10_000_000;
 pub struct Woehler {
     /// Stress amplitude of the knee, above zero.
     pub stress: f64,
-    /// Cycles to failure there, above zero.
+    /// Number of cycles to failure at the knee, above zero.
     pub cycles: f64,
     /// Slope above the knee, above zero.
     pub slope: f64,
-    /// Slope below it; 0: stresses below do no damage.
+    /// Slope below the knee; 0: stresses below it do no damage.
     pub slope_below: f64,
 }
 
@@ -38,26 +38,26 @@ impl Woehler {
 /// Options of a mission.
 #[derive(Clone, Copy, Debug)]
 pub struct MissionOptions<'a> {
-    /// Times, rising.
+    /// Times of the mission, rising.
     pub times: &'a [f64],
-    /// Speeds of rotation at the times, above zero, straight between them.
+    /// Speeds of rotation at these times, above zero, with straight lines between them.
     pub speeds: &'a [f64],
-    /// Angular frequency of the forces over the speed: the engine order where it is one, above zero.
+    /// Angular frequency of the forces over the speed, above zero: the engine order where the forces belong to one.
     pub engine_order: f64,
     /// Degree of freedom whose amplitude is read; `None`: the response degree of freedom of the mode.
     pub dof: Option<usize>,
     /// Rising amplitudes between which cycles are counted.
     pub edges: &'a [f64],
-    /// Stress amplitude per modal amplitude, 0 or more, of each place.
+    /// Stress amplitude per modal amplitude, 0 or more, at each position of interest.
     pub stresses: &'a [f64],
-    /// The line; needed with stresses.
+    /// Wöhler line for the damage; needed if `stresses` are given.
     pub woehler: Option<Woehler>,
     /// Forces and damping, as for a synthesised response.
     pub synthesis: SynthesisOptions,
 }
 
 impl MissionOptions<'_> {
-    /// Checks every field, for a model of `ndof` degrees of freedom.
+    /// Checks the values of all options for a model of `ndof` degrees of freedom.
     ///
     /// # Errors
     /// `Argument`, `NotFinite`, `Index` or `Dimension`, naming the field, its value and its range.

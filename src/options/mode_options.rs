@@ -8,17 +8,18 @@ use num_complex::Complex64;
 /// Artificial damping that makes the motion of a damped structure periodic; D is its damping ratio.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DampingForm {
-    /// The term −2Dω M ẋ.
+    /// Mass form: the term −2Dω M ẋ.
     #[default]
     Mass,
-    /// The term −ζ K ẋ, D = ζω/2, K the structure's own stiffness without springs and contacts.
+    /// Stiffness form: the term −ζ K ẋ with D = ζω/2, where K is the structure's stiffness without springs and
+    /// contacts.
     Stiffness,
 }
 
 /// Linear mode with stuck contacts from which a nonlinear mode starts.
 #[derive(Clone, Copy, Debug)]
 pub enum ModeChoice<'a> {
-    /// The number of the mode, from 0 by rising frequency.
+    /// The index of the mode, from 0 by rising frequency.
     Index(usize),
     /// The mode nearest to this angular frequency, rad per time unit, above zero.
     Near(f64),
@@ -63,21 +64,22 @@ impl ModeChoice<'_> {
 /// A motion near which the first point of a nonlinear mode lies, such as a point of another mode or above an internal resonance.
 #[derive(Clone, Copy, Debug)]
 pub struct ModeGuess<'a> {
-    /// Complex, (H + 1) × ndof, harmonic by harmonic, with an H of its own, at least 1. Its amplitude and phase are made those of
-    /// the first point; harmonics that laws do not excite by themselves are carried where the guess has them.
+    /// Motion: complex, (H + 1) × ndof, harmonic by harmonic, with its own H, at least 1. Its amplitude and phase are
+    /// adapted to those of the first point; harmonics that laws do not excite by themselves are carried where the
+    /// guess has them.
     pub motion: &'a [Complex64],
     /// Angular frequency, rad per time unit, above zero.
     pub omega: f64,
-    /// Damping ratio.
+    /// Damping ratio of the mode.
     pub damping_ratio: f64,
 }
 
 /// Quantity that measures the amplitude of a mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Amplitude {
-    /// sqrt(X₁ᴴ M X₁) of the fundamental, over one sector: length times square root of mass.
+    /// Modal amplitude sqrt(X₁ᴴ M X₁) of the fundamental, over one sector: length times square root of mass.
     Modal,
-    /// |Y₁|, the peak of the fundamental of the relative motion of this contact: length.
+    /// Amplitude |Y₁| of the fundamental of this contact's relative motion: length.
     Contact(usize),
 }
 
@@ -86,8 +88,8 @@ pub enum Amplitude {
 pub struct ModeOptions<'a> {
     /// Linear mode with stuck contacts from which the nonlinear mode starts.
     pub choice: ModeChoice<'a>,
-    /// `None`: the wave of the model's engine order. `Some(d)`: the wave of the signed nodal diameter d, modulo N, in which
-    /// sector s + 1 lags by 2πd/N.
+    /// Wave of the mode. `None`: the wave of the model's engine order. `Some(d)`: the wave of the signed nodal
+    /// diameter d, modulo N, in which sector s + 1 lags by 2πd/N.
     pub diameter: Option<i64>,
     /// Quantity that measures the amplitude.
     pub amplitude: Amplitude,
@@ -102,10 +104,10 @@ pub struct ModeOptions<'a> {
     /// Degree of freedom that fixes the phase: its fundamental is real. `None`: the one that moves
     /// most in the linear mode.
     pub reference_dof: Option<usize>,
-    /// Motion near the first point; `None`: the linear mode, from small amplitudes on.
+    /// Motion near the first point; `None`: the mode starts as the linear mode at small amplitudes.
     pub guess: Option<ModeGuess<'a>>,
-    /// Further curves that are sought: 0 none; 1 those of its branch points, with even harmonics carried along, and the one beyond a
-    /// tongue of internal resonance. They are children of the branch.
+    /// Further curves that are sought: 0 none; 1 those that start at its branch points, with even harmonics carried
+    /// along, and the one beyond a tongue of internal resonance. They become children of the branch.
     pub branches: usize,
     /// Largest number of generations of these curves; 0: 3.
     pub branch_depth: usize,
@@ -142,7 +144,8 @@ impl ModeOptions<'_> {
         size_of_tree(self.branch_depth, self.most_branches)
     }
 
-    /// Checks every field for a model with these numbers of degrees of freedom (per sector), contacts and sectors.
+    /// Checks the values of all options for a model with these numbers of degrees of freedom (per sector), contacts
+    /// and sectors.
     ///
     /// # Errors
     /// `Argument`, `NotFinite`, `Dimension` or `Index`, naming the field, its value and its range.

@@ -3,15 +3,15 @@
 use crate::error::{Result, fail};
 use crate::fourier::Measure;
 
-/// The derivative of the motion by time that a gauge sees.
+/// Derivative of the motion by time that a response reads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Component {
-    /// x
+    /// Displacement x.
     #[default]
     Displacement,
-    /// dx/dt
+    /// Velocity dx/dt.
     Velocity,
-    /// d²x/dt²
+    /// Acceleration d²x/dt².
     Acceleration,
 }
 
@@ -23,16 +23,17 @@ impl Component {
     }
 }
 
-/// A gauge Σ w x over degrees of freedom of one sector, and what is read from it.
+/// A response: a gauge Σ w x over degrees of freedom of one sector, and the number that is read from it over a
+/// period.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Response<'a> {
-    /// The number that is read.
+    /// Measure: the number that is read over a period.
     pub measure: Measure,
-    /// Degrees of freedom; none: the response degree of freedom of the solver.
+    /// Degrees of freedom of the gauge; empty: the response degree of freedom of the solver.
     pub dofs: &'a [usize],
-    /// Their weights; none: 1 each.
+    /// Weights of these degrees of freedom; empty: 1 each.
     pub weights: &'a [f64],
-    /// Sector of the wheel, from 0.
+    /// Sector of the wheel that is read, from 0.
     pub sector: usize,
     /// Displacement, velocity or acceleration.
     pub component: Component,
@@ -43,7 +44,7 @@ pub struct Response<'a> {
 const MOST_RESPONSES: usize = 100_000;
 
 impl Response<'_> {
-    /// Checks one response of a model of so many degrees of freedom and sectors.
+    /// Checks a response of a model with `ndof` degrees of freedom and `sectors` sectors.
     ///
     /// # Errors
     /// `Index`, `Dimension`, `NotFinite` or `Argument`, naming the field, its value and its range.
@@ -74,7 +75,7 @@ impl Response<'_> {
         Ok(())
     }
 
-    /// The response of a run that forces no fundamental: the root of the mean square of the response degree of freedom.
+    /// Response of a run without forces in the fundamental: the root mean square of the response degree of freedom.
     pub(crate) fn of_no_fundamental() -> Self {
         Self {
             measure: Measure::Rms,
@@ -82,7 +83,7 @@ impl Response<'_> {
         }
     }
 
-    /// Whether this is the fundamental displacement of a degree of freedom as every forced response has it.
+    /// Whether this is the fundamental displacement of one degree of freedom, as every forced response observes it.
     #[must_use]
     pub fn is_plain(&self) -> bool {
         self.measure == Measure::Fundamental

@@ -18,13 +18,14 @@ pub const RUN_UP_INTEGRATED_TURNS: usize = 10_000;
 pub struct RunUpOptions {
     /// First angular frequency of the forces, rad per time unit, above zero.
     pub omega_start: f64,
-    /// Last one; below the first for a run-down.
+    /// Last angular frequency of the forces; below the first for a run-down.
     pub omega_stop: f64,
-    /// |dω/dt|, above zero.
+    /// Rate |dω/dt| of the frequency, above zero.
     pub rate: f64,
     /// Degree of freedom whose displacement is observed; `None`: the response degree of freedom of the mode.
     pub dof: Option<usize>,
-    /// Most turns that are integrated in time around the largest displacement, which corrects it and tells its error; 0: none.
+    /// Largest number of turns that are integrated in time around the largest displacement, which corrects the
+    /// displacement and estimates its error; 0: none.
     pub integrated_turns: usize,
     /// Forces and damping, as for a synthesised response; `compare` has no effect. With a damping ratio nothing is integrated.
     pub synthesis: SynthesisOptions,
@@ -44,13 +45,13 @@ impl Default for RunUpOptions {
 }
 
 impl RunUpOptions {
-    /// Turns of the forces within the run-up.
+    /// Number of turns of the forces within the run-up.
     #[must_use]
     pub fn turns(&self) -> f64 {
         (self.omega_stop.powi(2) - self.omega_start.powi(2)).abs() / (2.0 * TAU * self.rate)
     }
 
-    /// Checks every field, for a model of `ndof` degrees of freedom.
+    /// Checks the values of all options for a model of `ndof` degrees of freedom.
     ///
     /// # Errors
     /// `Argument`, `NotFinite` or `Index`, naming the field, its value and its range.

@@ -4,13 +4,14 @@ use crate::error::{Result, fail};
 use crate::options::content::Content;
 use crate::options::waves::Waves;
 
-/// The way to the flexibility of the structure at the contacts.
+/// Method by which the flexibility of the structure at the contacts is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Flexibility {
-    /// A basis for large structures where it holds, factors otherwise.
+    /// A basis for large structures where it is accurate, factors otherwise.
     #[default]
     Automatic,
-    /// Complex LU factors of the dynamic stiffness of all degrees of freedom at each frequency that is needed.
+    /// Complex LU factors of the dynamic stiffness of all degrees of freedom, at each frequency where they are
+    /// needed.
     Direct,
     /// A block Krylov basis per nodal diameter from one real or Hermitian factorisation.
     Krylov,
@@ -21,10 +22,12 @@ pub enum Flexibility {
 #[allow(clippy::struct_excessive_bools, reason = "each is an option of its own")]
 pub struct SolverOptions {
     /// Requested relative error, from which the harmonics of each point are chosen. It applies to the complex
-    /// fundamental of the response degree of freedom; in a nonlinear mode to the frequency and to the damping
-    /// ratio, the latter relative to the largest one so far. `0`: exactly [`Self::harmonics`], whatever the error.
+    /// fundamental of the response degree of freedom; in a nonlinear mode to the frequency and to the damping ratio,
+    /// the latter relative to the largest one so far. `0`: exactly [`Self::harmonics`] are carried, whatever the
+    /// error.
     pub tolerance: f64,
-    /// Highest harmonic number H; where the tolerance chooses the harmonics, that of a second try at the first point.
+    /// Highest harmonic H; where the tolerance chooses the harmonics, the highest one of a second attempt at the
+    /// first point.
     pub harmonics: usize,
     /// Largest H that the tolerance may choose, at least the highest forced harmonic. Points that would need more
     /// are kept, and the status of the branch reports them.
@@ -51,16 +54,17 @@ pub struct SolverOptions {
     pub max_newton: usize,
     /// Largest number of accepted points.
     pub max_points: usize,
-    /// Degree of freedom whose fundamental defines amplitude and peaks; `None`: the forced one that moves most at
-    /// the lower end of the range with the contacts at their reference stiffness. In a nonlinear mode its
-    /// fundamental is the reported amplitude; `None`: that of the phase reference.
+    /// Degree of freedom whose fundamental defines amplitude and peaks. `None`: the forced one that moves most at the
+    /// lower end of the range, with the contacts at their reference stiffness. In a nonlinear mode its fundamental is
+    /// the reported amplitude; `None`: the degree of freedom of the phase reference.
     pub response_dof: Option<usize>,
-    /// Carry the mean and the even harmonics even where symmetry makes them zero.
+    /// Whether to carry the mean and the even harmonics even where symmetry makes them zero.
     pub keep_even_harmonics: bool,
-    /// Estimate the error of every stored point, by a few Newton steps with more harmonics. Each estimate costs about as much time as
-    /// a solution with more harmonics. Where the tolerance chooses the harmonics, the error is estimated in any case.
+    /// Whether to estimate the error of every stored point, by a few Newton steps with more harmonics. Each estimate
+    /// costs about as much time as a solution with more harmonics. Where the tolerance chooses the harmonics, the
+    /// error is estimated in any case.
     pub estimate_error: bool,
-    /// The way to the flexibility of the structure at the contacts of a forced response.
+    /// Method by which the flexibility of the structure at the contacts of a forced response is computed.
     pub flexibility: Flexibility,
     /// Largest estimated relative error of the motion of the structure on a basis, up to which the basis grows.
     pub certificate: f64,
@@ -68,11 +72,11 @@ pub struct SolverOptions {
     /// of its error, each by itself; `0`: no limit. A call that needs more is refused before it asks for them; where a
     /// tolerance chooses the harmonics, fewer are used, and an estimate that needs more is an unknown error.
     pub memory_limit: usize,
-    /// Stability along the curve of a forced response: the perturbations whose Floquet multipliers are computed at each
-    /// point; `None`: none. A nonlinear mode refuses it.
+    /// Perturbations whose Floquet multipliers are computed at each point of a forced response; `None`: no stability.
+    /// A nonlinear mode refuses this option.
     pub stability: Option<Waves>,
-    /// Free sliders of each stored point of a forced response, with the derivatives of its amplitude by their places (see
-    /// [`freedom`](crate::freedom())). A nonlinear mode refuses it.
+    /// Whether to compute the free sliders of each stored point of a forced response, with the derivatives of its
+    /// amplitude by their places (see [`freedom`](crate::freedom())). A nonlinear mode refuses this option.
     pub freedom: bool,
     /// Sliders that have exchanged motions; an analysis sets it.
     pub exchange: Exchanged,
@@ -83,12 +87,12 @@ pub struct SolverOptions {
 /// Sliders under a constant load whose motions are exchanged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Exchanged {
-    /// None.
+    /// No sliders.
     #[default]
     None,
-    /// Rigid ones, which have no other equations.
+    /// Rigid sliders, which have no other equations.
     Rigid,
-    /// Near-rigid ones, too.
+    /// Rigid and near-rigid sliders.
     NearRigid,
 }
 
@@ -137,7 +141,7 @@ pub const MAX_REFINEMENT: usize = 64;
 pub const MAX_SAMPLES: usize = 1 << 24;
 
 impl SolverOptions {
-    /// The same options with exactly the given harmonics, whatever the error.
+    /// A copy of these options with exactly the given harmonics, whatever the error.
     #[must_use]
     pub fn fixed(&self) -> Self {
         Self {
@@ -146,7 +150,7 @@ impl SolverOptions {
         }
     }
 
-    /// Checks every field.
+    /// Checks the values of all options.
     ///
     /// # Errors
     /// [`Status::Argument`](crate::error::Status::Argument) naming the field, its value and its

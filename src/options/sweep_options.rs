@@ -14,17 +14,17 @@ const MOST_TURNS: f64 = 1e8;
 pub struct SweepOptions<'a> {
     /// First angular frequency of harmonic 1, rad per time unit, above zero.
     pub omega_start: f64,
-    /// Last one; below the first for a run-down.
+    /// Last angular frequency of harmonic 1; below the first for a run-down.
     pub omega_stop: f64,
-    /// |dω/dt|, above zero.
+    /// Rate |dω/dt| of the frequency, above zero.
     pub rate: f64,
     /// Degree of freedom whose displacement is observed.
     pub dof: usize,
-    /// As [`TimeOptions::tolerance`], for the first periodic motion and the steps of smooth laws.
+    /// Tolerance as [`TimeOptions::tolerance`], for the first periodic motion and the steps of smooth laws.
     pub tolerance: f64,
-    /// Most periods that the first periodic motion may take.
+    /// Largest number of periods that the search for the first periodic motion may integrate.
     pub max_periods: usize,
-    /// Guess of the first periodic motion, as [`TimeOptions::start`]; `None`: rest.
+    /// Guess of the first periodic motion, as [`TimeOptions::start`]; `None`: zero displacement and velocity.
     pub start: Option<&'a [Complex64]>,
 }
 
@@ -44,7 +44,7 @@ impl Default for SweepOptions<'_> {
 }
 
 impl<'a> SweepOptions<'a> {
-    /// Those of the first periodic motion.
+    /// Options of the first periodic motion.
     pub(crate) fn first(&self) -> TimeOptions<'a> {
         TimeOptions {
             omega: self.omega_start,
@@ -55,7 +55,7 @@ impl<'a> SweepOptions<'a> {
         }
     }
 
-    /// Checks every field, for a model of `ndof` degrees of freedom.
+    /// Checks the values of all options for a model of `ndof` degrees of freedom.
     ///
     /// # Errors
     /// `Argument`, `NotFinite`, `Index` or `Dimension`, naming the field, its value and its range.

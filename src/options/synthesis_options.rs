@@ -7,11 +7,11 @@ use crate::error::{Result, fail};
 pub struct SynthesisOptions {
     /// Factor on all forces of the model.
     pub force_factor: f64,
-    /// Damping ratio that is added to that of the mode.
+    /// Damping ratio that is added to the damping ratio of the mode.
     pub damping_ratio: f64,
-    /// Add the damping of the model's C, which is right for a mode that was computed without it.
+    /// Whether to add the damping of the model's C, as is right for a mode that was computed without it.
     pub model_damping: bool,
-    /// Compute the resonance next to each synthesised one, which tells its error.
+    /// Whether to compute the resonance next to each synthesised one, which shows its error.
     pub compare: bool,
 }
 
@@ -27,7 +27,7 @@ impl Default for SynthesisOptions {
 }
 
 impl SynthesisOptions {
-    /// Checks every field.
+    /// Checks the values of all options.
     ///
     /// # Errors
     /// `NotFinite` or `Argument`, naming the field, its value and its range.

@@ -52,7 +52,7 @@ impl Default for TimeOptions<'_> {
 }
 
 impl TimeOptions<'_> {
-    /// Checks every field, for a model of `ndof` degrees of freedom per sector.
+    /// Checks the values of all options for a model of `ndof` degrees of freedom per sector.
     ///
     /// # Errors
     /// `Argument`, `NotFinite` or `Dimension`, naming the field, its value and its range.
@@ -105,7 +105,7 @@ pub(super) fn check_search(tolerance: f64, max_periods: usize) -> Result<()> {
 pub struct VerifyOptions {
     /// Method that finds the steady state. Shooting finds the point's own solution where it is unstable, too.
     pub method: SteadyMethod,
-    /// See [`TimeOptions::tolerance`].
+    /// Tolerance of the integration, as [`TimeOptions::tolerance`].
     pub tolerance: f64,
     /// Largest number of integrated periods.
     pub max_periods: usize,
@@ -127,7 +127,7 @@ impl Default for VerifyOptions {
 }
 
 impl VerifyOptions {
-    /// Checks every field.
+    /// Checks the values of all options.
     ///
     /// # Errors
     /// `Argument` or `NotFinite`, naming the field, its value and its range.

@@ -10,13 +10,14 @@ const MOST_BRANCHES: usize = 32;
 /// Kind: cap.
 const TREE_SIZE_LARGEST: (usize, usize) = (8, 10_000);
 
-/// Largest numbers of generations and of branches that options ask for.
+/// Largest numbers of generations and of branches, with defaults in place of zeros.
 pub(crate) fn size_of_tree(depth: usize, most: usize) -> (usize, usize) {
     let value = |given: usize, default| if given == 0 { default } else { given };
     (value(depth, DEPTH), value(most, MOST_BRANCHES))
 }
 
-/// Refuses a larger tree, and the size of one that is not sought: `largest` is the largest number of `branches`.
+/// Refuses a tree that is too large, and a size for one that is not sought: `largest` is the largest value of the
+/// option `branches`.
 ///
 /// # Errors
 /// `Argument`, naming the field, its value and its range.

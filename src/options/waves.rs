@@ -2,18 +2,18 @@
 
 use crate::error::{Result, fail};
 
-/// Perturbations whose multipliers are computed.
+/// Perturbations whose Floquet multipliers are computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Waves {
-    /// Those of the nodal diameters of the travelling wave itself.
+    /// Perturbations in the nodal diameters of the travelling wave itself.
     #[default]
     Wave,
-    /// All of the wheel.
+    /// All perturbations of the wheel.
     Wheel,
 }
 
 impl Waves {
-    /// Refuses all waves of a plain model, which has one alone. `name` is that of the option.
+    /// Refuses all waves for a plain model, which has just one. `name` is the name of the option.
     ///
     /// # Errors
     /// `Argument`.

@@ -10,11 +10,11 @@ use crate::condense::{Condensed, LoadedLaw};
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
+use crate::linalg::libraries::Arch;
 use crate::linalg::norm;
 use crate::problem::contact_jacobian::Blocks;
 use crate::problem::static_state::StaticState;
 use num_complex::Complex64;
-use pulp::Arch;
 
 /// Forces f of all laws, summed per relative coordinate, at the motion evaluated last.
 pub struct ContactForces<'a> {
@@ -22,25 +22,26 @@ pub struct ContactForces<'a> {
     condensed: &'a Condensed,
     interrupt: &'a Interrupt<'a>,
     evaluator: Box<Evaluator>,
-    /// The same with other samples, if some law is sampled.
+    /// A second evaluator of the laws with another number of samples, if some law is sampled.
     other: Option<Box<Evaluator>>,
-    /// s, where every law is scaled to s·f(y/s).
+    /// Scale factor s: every law f(y) is replaced by s·f(y/s).
     factor: f64,
-    /// Static motion per coordinate and packed static forces from which motions and forces count; empty: zero.
+    /// Static motion per coordinate, and packed static forces, from which motions and forces are counted; empty if
+    /// these are zero.
     rest: Vec<f64>,
     rest_force: Vec<f64>,
     /// Tangent stiffness of the laws at the static motion, law after law and row-major.
     tangents: Vec<f64>,
-    /// Share of the laws; the rest of the force is that of the tangents.
+    /// Weight α of the laws in α f + (1 − α) T y, where T are their tangents; `None`: the laws alone.
     share: Option<f64>,
-    /// y/s of all coordinates, and of those of one law.
+    /// Scaled motions y/s of all coordinates; and the motions of one law.
     scaled: Vec<f64>,
     gathered: Vec<f64>,
-    /// Force of one law.
+    /// Force of one law, for the check of its samples.
     checked: Vec<f64>,
-    /// Memory for laws of 1, 2, … directions, where such laws exist.
+    /// Per number of directions (1, 2, …), memory for the evaluation of a law, where such laws exist.
     found: Vec<Option<Evaluation>>,
-    /// Packed sums per coordinate.
+    /// Packed forces summed per coordinate.
     force: Vec<f64>,
     offset: Vec<f64>,
     by_omega: Vec<f64>,
@@ -49,15 +50,16 @@ pub struct ContactForces<'a> {
     all_stuck: bool,
     /// Whether the forces of all laws are affine functions of the motion.
     all_linear: bool,
-    /// Per coordinate, whether all its laws stick, or along their normal are closed, so that ∂f/∂y is theirs.
+    /// Per coordinate, whether all its laws stick or, along their normal, are closed, so that ∂f/∂y is their constant
+    /// stiffness.
     linear: Vec<bool>,
-    /// Per coordinate, whether all its laws stick and none acts along its normal, where a load acts at rest.
+    /// Per coordinate, whether all its laws stick and none acts along its normal, where a static load may act.
     inactive: Vec<bool>,
     slip_fractions: Vec<f64>,
     open_fractions: Vec<f64>,
-    /// Per law whether it presses at the static motion.
+    /// Per law, whether it presses at the static motion.
     presses: Vec<bool>,
-    /// Per coordinate, the rounding of the force of near-rigid contacts.
+    /// Per coordinate, the rounding error of the force of near-rigid contacts.
     rounding: Vec<f64>,
 }
 
@@ -79,7 +81,7 @@ impl<'a> ContactForces<'a> {
         Ok(forces)
     }
 
-    /// The same without memory for [`Self::sampling_error`].
+    /// The laws of a condensed model as `new` makes them, without memory for [`Self::sampling_error`].
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -87,7 +89,8 @@ impl<'a> ContactForces<'a> {
         Self::with((condensed, samples), false, interrupt)
     }
 
-    /// As [`Self::unchecked`] for the forces alone: their Jacobians are empty, which saves most of an evaluation with many harmonics.
+    /// The laws as [`Self::unchecked`] makes them, for forces without Jacobians, which saves most of an evaluation
+    /// with many harmonics.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -158,14 +161,14 @@ impl<'a> ContactForces<'a> {
         self.interrupt
     }
 
-    /// Scales every law f to s·f(y/s), its forces at a motion `factor` = s times smaller. A large factor selects the
-    /// laws near rest, linear springs (infinite: exactly those); 1 selects the laws themselves; between them runs the
-    /// homotopy that finds a first point.
+    /// Scales every law f to s·f(y/s): its force at a motion reduced by `factor` = s. A large factor selects the laws
+    /// linearised at small motion (infinite: exactly linear springs); 1 selects the laws themselves; between them
+    /// runs the homotopy that finds a first point.
     pub fn set_scale(&mut self, factor: f64) {
         self.factor = factor;
     }
 
-    /// Counts motions and forces from a static motion, in the unit of the condensed model, whose laws are evaluated at
+    /// Counts motions and forces from a static state, in the unit of the condensed model, whose laws are evaluated at
     /// `omega`: a law f becomes s·(f(y₀ + y/s) − f(y₀)).
     ///
     /// # Errors
@@ -286,8 +289,8 @@ impl<'a> ContactForces<'a> {
         Ok(())
     }
 
-    /// Subtracts the static forces: with F and J at Y the derivative by ln s of s·(F − F₀) is
-    /// s·(F − J Y) + s·(J Y₀ − F₀).
+    /// Subtracts the static forces. With F and J at Y, the derivative by ln s of s·(F − F₀) is s·(F − J Y) + s·(J Y₀
+    /// − F₀).
     fn count_from_rest(&mut self, unit: f64) {
         let m = self.condensed.set().packed_len();
         for (c, rest) in self.rest.iter().enumerate() {
@@ -329,7 +332,7 @@ impl<'a> ContactForces<'a> {
         }
     }
 
-    /// The forces of the laws at rest, linear in the motion.
+    /// Sets the forces of the laws linearised at small motion.
     fn linearise(&mut self, motion: &[f64]) {
         let m = self.condensed.set().packed_len();
         self.offset.fill(0.0);
@@ -434,7 +437,7 @@ impl<'a> ContactForces<'a> {
     }
 }
 
-/// The packed motions of one law, direction after direction.
+/// Copies the packed motions of one law, direction after direction.
 fn gather<'m>(at: &[usize], m: usize, motion: &'m [f64], gathered: &'m mut [f64]) -> &'m [f64] {
     if let [c] = at[..] {
         return &motion[c * m..(c + 1) * m];
@@ -445,7 +448,7 @@ fn gather<'m>(at: &[usize], m: usize, motion: &'m [f64], gathered: &'m mut [f64]
     &gathered[..at.len() * m]
 }
 
-/// The same over the factor by which motion scales with the load of a law.
+/// Copies the packed motions of one law, divided by the factor by which motion scales with its load.
 fn gather_scaled<'m>(
     at: &[usize],
     (m, factor): (usize, Option<f64>),
@@ -463,7 +466,7 @@ fn gather_scaled<'m>(
     &gathered[..at.len() * m]
 }
 
-/// Turns the evaluation of the law of a reference load into that of the load at a frequency.
+/// Turns the evaluation of a law at its reference load into that at the load of the current frequency.
 fn apply_load(here: &LoadedLaw<'_>, found: &mut Evaluation) {
     for (i, by_omega) in found.by_omega.iter_mut().enumerate() {
         // By the load, at a motion that does not change.
@@ -484,7 +487,7 @@ fn apply_load(here: &LoadedLaw<'_>, found: &mut Evaluation) {
     }
 }
 
-/// sum += factor·term
+/// sum ← sum + factor·term, number by number.
 fn add(sum: &mut [f64], term: &[f64], factor: f64) {
     for (s, t) in sum.iter_mut().zip(term) {
         *s += factor * t;

@@ -4,20 +4,20 @@
 use crate::condense::Condensed;
 use crate::error::{Result, try_copy, try_extend, try_push, try_vec};
 
-/// Blocks of order m, column-major, sorted by the coordinate of the force.
+/// Blocks ∂f/∂y of order m, column-major, sorted by the coordinate of the force.
 pub struct Blocks {
     order: usize,
-    /// Per force coordinate the first of its blocks; one more at the end.
+    /// Per force coordinate the index of its first block; one more index at the end.
     first: Vec<usize>,
     /// Motion coordinate of each block.
     motion: Vec<usize>,
-    /// Force coordinate and number of the blocks, by the coordinate of the motion. The pattern is symmetric, so that
-    /// they begin where `first` states.
+    /// Blocks sorted by the coordinate of the motion: force coordinate and index of each. The pattern is symmetric,
+    /// so that they begin where `first` states.
     of_motions: Vec<(usize, usize)>,
     values: Vec<f64>,
-    /// Per block whether a law has been added since the last [`Self::clear`].
+    /// Per block, whether a law has been added since the last [`Self::clear`].
     filled: Vec<bool>,
-    /// Position of the blocks of each law: force direction after force direction.
+    /// Per law, the index of the block for each pair of directions: force direction after force direction.
     of_laws: Vec<usize>,
 }
 
@@ -87,8 +87,8 @@ impl Blocks {
         self.filled.fill(false);
     }
 
-    /// Adds the Jacobian of a law of `d` directions whose blocks begin at `from` in the list of all laws' blocks;
-    /// returns where those of the next law begin. The contents of `jacobian` afterwards are unspecified.
+    /// Adds the Jacobian of a law of `d` directions whose blocks begin at position `from` in the list of all laws'
+    /// blocks; returns the position of the next law. The contents of `jacobian` afterwards are unspecified.
     pub fn add(&mut self, from: usize, d: usize, jacobian: &mut Vec<f64>) -> usize {
         let m = self.order;
         if m == 0 {
@@ -128,8 +128,8 @@ impl Blocks {
         }
     }
 
-    /// Adds springs to the blocks of a law of `d` directions that begin at `from` in the list of all laws' blocks:
-    /// `stiffness` per block; returns where those of the next law begin.
+    /// Adds springs of `stiffness` per block to a law of `d` directions whose blocks begin at position `from` in the
+    /// list of all laws' blocks; returns the position of the next law.
     pub fn add_springs(&mut self, from: usize, d: usize, stiffness: impl Fn(usize) -> f64) -> usize {
         let m = self.order;
         for k in 0..d * d {
@@ -141,12 +141,12 @@ impl Blocks {
         from + d * d
     }
 
-    /// Exchanges all blocks for stored ones.
+    /// Exchanges the numbers of all blocks for stored ones.
     pub fn swap(&mut self, values: &mut Vec<f64>) {
         core::mem::swap(&mut self.values, values);
     }
 
-    /// Copies all blocks.
+    /// Copies the numbers of all blocks.
     pub fn copy(&self, values: &mut Vec<f64>) -> Result<()> {
         values.clear();
         try_extend(values, &self.values, "the contact Jacobians")

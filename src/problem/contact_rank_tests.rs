@@ -28,7 +28,7 @@ fn forces_and_flexibility_are_the_matrix_of_sliders_and_of_friction_with_its_nor
             ..SolverOptions::default()
         };
         let condensed = Condensed::new(&model, &options, (0.6, 0.9), &none).unwrap();
-        let mut problem = HarmonicBalance::new(&condensed, 8, (0.6, 0.9), 0, None, &none).unwrap();
+        let mut problem = HarmonicBalance::new(&condensed, 8, (0.6, 0.9).into(), 0, None, &none).unwrap();
         let (n, m) = (problem.unknowns(), condensed.set().packed_len());
         let u: Vec<f64> = (0..n)
             .map(|k| 0.9 * (1.7 * k as f64).sin() / (1 + k % m) as f64)

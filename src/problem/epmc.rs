@@ -77,35 +77,36 @@ pub struct Gauge {
 /// The linear mode from which a nonlinear one starts, at amplitude 1.
 #[derive(Clone, Debug)]
 pub struct LinearMode {
-    /// Angular frequency.
+    /// Angular frequency of the linear mode.
     pub omega: f64,
-    /// Damping ratio.
+    /// Damping ratio of the linear mode.
     pub damping: f64,
     /// Fundamental of all degrees of freedom, in the caller's units.
     pub shape: Vec<Complex64>,
-    /// The static state about which it vibrates.
+    /// The static state about which the mode vibrates.
     pub rest: StaticState,
 }
 
-/// A nonlinear mode of a condensed model.
+/// A nonlinear mode of a condensed model as equations over its amplitude.
 pub struct Epmc<'a> {
     condensed: &'a Condensed,
     forces: Box<ContactForces<'a>>,
     structure: Box<ModeFlexibility>,
     gauge: &'a Gauge,
     linear: &'a LinearMode,
-    /// x̂ of all carried harmonics at the point last evaluated, and of which of them it is that of the modes.
+    /// Shape x̂ in all carried harmonics at the point last evaluated; and per harmonic, whether it is stored in the
+    /// modes of the wave.
     x: Vec<Complex64>,
     of_modes: Vec<bool>,
-    /// Memory for one harmonic of it, and of a product.
+    /// Memory for one harmonic of the shape, and of a product with it.
     harmonic: [Vec<Complex64>; 2],
     weighted: Vec<Complex64>,
     w: Vec<Complex64>,
-    /// A packed signal, for a column of the Jacobian.
+    /// Memory: a packed signal for a column of the Jacobian.
     change: Vec<f64>,
-    /// G of each harmonic, column after column.
+    /// Flexibility G of each harmonic, column after column.
     tables: Vec<Vec<Complex64>>,
-    /// The same in the layout of [`ContactForces::couple_all`].
+    /// Flexibility G in the layout of [`ContactForces::couple_all`].
     flexibility: Vec<Complex64>,
     /// Columns of the Jacobian that belong to the unknowns of ω and D, and the parts of its last two rows that belong
     /// to contact forces: amplitude and phase per force.
@@ -113,9 +114,9 @@ pub struct Epmc<'a> {
     by_damping: Vec<f64>,
     gauge_rows: Vec<[Complex64; 2]>,
     products: Box<mode_products::ModeProducts>,
-    /// Unknowns given for the first point.
+    /// Unknowns that the caller gave for the first point; `None` without a guess.
     guess: Option<Vec<f64>>,
-    /// Whether the linear mode is one of several of its frequency.
+    /// Whether several linear modes share the frequency of this one.
     is_repeated: bool,
 }
 
@@ -177,7 +178,7 @@ impl<'a> Epmc<'a> {
         })
     }
 
-    /// Makes the flexibility within a relative tolerance, as exactly as an estimate of an error needs it.
+    /// Sets the relative tolerance of the flexibility, as an error estimate needs it.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -187,8 +188,8 @@ impl<'a> Epmc<'a> {
         Ok(())
     }
 
-    /// Tells that the linear mode is one of several of its frequency. Nonlinear modes may then lie in a continuum: bodies that nothing
-    /// couples vibrate in any phase to each other.
+    /// States that several linear modes share the frequency. Nonlinear modes may then lie in a continuum: bodies that
+    /// nothing couples vibrate in any phase to each other.
     pub fn set_repeated(&mut self, is_repeated: bool) {
         self.is_repeated = is_repeated;
     }
@@ -198,7 +199,7 @@ impl<'a> Epmc<'a> {
         self.guess = Some(guess);
     }
 
-    /// Frequency and damping ratio that belong to unknowns.
+    /// Frequency and damping ratio from the unknowns.
     #[must_use]
     pub fn frequency_and_damping(linear: &LinearMode, u: &[f64]) -> (f64, f64) {
         let n = u.len();
@@ -227,7 +228,7 @@ impl<'a> Epmc<'a> {
         EPMC_OMEGA_UNIT * change[change.len() - 2]
     }
 
-    /// Carried harmonics of all degrees of freedom per unit of amplitude, harmonic after harmonic, at the point last
+    /// Shape x̂ of all degrees of freedom per unit of amplitude, harmonic after harmonic, at the point last
     /// evaluated, in the solver's units.
     pub fn shape(&mut self) -> &[Complex64] {
         let n = self.condensed.ndof();
@@ -242,7 +243,7 @@ impl<'a> Epmc<'a> {
         &self.x
     }
 
-    /// The fundamental of all degrees of freedom there.
+    /// Fundamental of the shape x̂, all degrees of freedom, at the point last evaluated.
     #[must_use]
     pub fn fundamental(&self) -> &[Complex64] {
         let (i, n) = (self.condensed.set().fundamental(), self.condensed.ndof());
@@ -263,7 +264,7 @@ impl<'a> Epmc<'a> {
         &self.forces
     }
 
-    /// The linear mode as unknowns.
+    /// Fills in the unknowns of the linear mode.
     pub fn linear_start(&self, u: &mut [f64]) {
         let set = self.condensed.set();
         let m = set.packed_len();
@@ -294,7 +295,8 @@ impl<'a> Epmc<'a> {
         self.forces.onset(&motion)
     }
 
-    /// The same as [`Self::linear_up_to`] about a loaded static state, where no law states its nearly linear range.
+    /// Finds the range of [`Self::linear_up_to`] about a loaded static state, where no law states its nearly linear
+    /// range.
     fn linear_about_static(&mut self, first: f64) -> Result<(f64, f64)> {
         let exactly = self.onset()?.linear.log10();
         if exactly.is_finite() {
@@ -345,7 +347,7 @@ impl<'a> Epmc<'a> {
         Ok((exactly, nearly))
     }
 
-    /// B x̂ of the fundamental, times L².
+    /// Computes B x̂ of the fundamental, times L², for the normalisation.
     fn weigh(&mut self) {
         let i = self.condensed.set().fundamental();
         let x = self.structure.x();
@@ -364,7 +366,7 @@ impl<'a> Epmc<'a> {
         }
     }
 
-    /// Evaluates amplitude and phase in the last two rows of the system, with their derivatives by all but the
+    /// Evaluates amplitude and phase, the last two rows of the system, with their derivatives by all unknowns but the
     /// motions.
     fn fix_gauge(&mut self, rates: (f64, f64), by_parameter: f64, out: &mut Residual) {
         self.weigh();
@@ -512,7 +514,7 @@ impl Jacobian for Epmc<'_> {
 }
 
 impl AlongPath for Epmc<'_> {
-    /// The fixed parameter is log₁₀ a; along the path of scaled laws s = e^p/a.
+    /// Evaluates with the fixed parameter log₁₀ a; along the path of scaled laws s = e^p/a.
     fn evaluate_along(&mut self, path: Path, log10: f64, u: &[f64], p: f64, out: &mut Residual) -> Result<()> {
         let unit = 10f64.powf(-log10);
         if path == Path::FromTangents {
@@ -538,7 +540,7 @@ impl Problem for Epmc<'_> {
         self.evaluate_scaled(u, 10f64.powf(-p), -LN_10, out)
     }
 
-    /// 1 plus the damping ratio above that of the linear mode, in units of `DAMPING_UNIT`.
+    /// Observes 1 + (D − D₀)/`DAMPING_UNIT`, D₀ being the damping ratio of the linear mode.
     fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
         let n = u.len();
         ((1.0 + u[n - 1]).into(), direction[n - 1].into())

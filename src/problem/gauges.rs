@@ -19,16 +19,17 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the responses";
 
-/// One gauge on a condensed model.
+/// One response (a gauge) on a condensed model.
 pub struct Gauge {
     measure: Measure,
     order: i32,
-    /// Per carried harmonic the rows of its degrees of freedom, each times its weight and the turn to its sector.
+    /// Per carried harmonic, the rows of its degrees of freedom, each times its weight and the phase factor of its
+    /// sector.
     rows: Vec<Vec<(Complex64, MotionRow)>>,
 }
 
 impl Gauge {
-    /// The gauge of a response; one without degrees of freedom has the `default` one.
+    /// The gauge of a response; a response without degrees of freedom reads the `default` one.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -66,12 +67,12 @@ impl Gauge {
         }
     }
 
-    /// Σ w x in a harmonic.
+    /// Weighted sum Σ w x in the i-th harmonic.
     pub fn along(&self, i: usize, x: &[Complex64]) -> Complex64 {
         self.rows[i].iter().map(|(weight, row)| weight * row.along(x)).sum()
     }
 
-    /// (ihω)ᵏ of the derivative by time, and its derivative by ω.
+    /// Factor (ihω)ᵏ of the k-th derivative by time, and its derivative by ω.
     #[must_use]
     pub fn factor(&self, number: usize, omega: f64) -> (Complex64, Complex64) {
         if self.order == 0 {
@@ -83,23 +84,23 @@ impl Gauge {
     }
 }
 
-/// The reading of a gauge at a point, in the unit of the condensed model.
+/// Value of a gauge at a point, in the unit of the condensed model.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
-    /// The reading.
+    /// Value, complex amplitude and kind of the response.
     pub reading: Reading,
     /// Derivative of the value along the direction.
     pub slope: f64,
-    /// Derivative of the complex amplitude, NaN where there is none.
+    /// Derivative of the complex amplitude along the direction; NaN where the measure has none.
     pub complex_slope: Complex64,
-    /// Reduced times of the extremes, of a range the largest value first, and their changes along the direction; NaN where the
-    /// measure has none.
+    /// Times ωt at which the extremes occur, for a range first that of the largest value, and their changes along the
+    /// direction; NaN where the measure has none.
     pub instants: [f64; 2],
     pub instant_rates: [f64; 2],
 }
 
 impl Seen {
-    /// Amplitude and derivative as a problem observes them: complex where the measure is.
+    /// Amplitude and derivative as a problem observes them: complex where the measure is complex.
     pub fn observed(&self) -> (Complex64, Complex64) {
         if self.reading.complex.re.is_nan() {
             (self.reading.value.into(), self.slope.into())
@@ -119,17 +120,22 @@ pub struct Gauges<'a> {
     /// Packed signals of the gauges, and their changes.
     signals: Vec<f64>,
     changes: Vec<f64>,
-    w: Vec<Complex64>,
-    dw: Vec<Complex64>,
-    x: Vec<Complex64>,
-    dx: Vec<Complex64>,
+    motion: GaugeMotion,
     /// The point and the direction that were read last, and the harmonics whose signals are known there.
     last: Vec<f64>,
     known: Vec<bool>,
 }
 
+/// Memory of motions and of their changes, relative and of the structure.
+pub struct GaugeMotion {
+    w: Vec<Complex64>,
+    dw: Vec<Complex64>,
+    x: Vec<Complex64>,
+    dx: Vec<Complex64>,
+}
+
 impl<'a> Gauges<'a> {
-    /// The gauges of `responses` on a condensed model; one without degrees of freedom has the `default` one.
+    /// The gauges of `responses` on a condensed model; a response without degrees of freedom reads the `default` one.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -154,17 +160,20 @@ impl<'a> Gauges<'a> {
             reader: Reader::new(set)?,
             signals: try_vec(numbers, 0.0, CONTEXT)?,
             changes: try_vec(numbers, 0.0, CONTEXT)?,
-            w: vector(condensed.coordinates())?,
-            dw: vector(condensed.coordinates())?,
-            x: vector(condensed.ndof())?,
-            dx: vector(condensed.ndof())?,
+            motion: GaugeMotion {
+                w: vector(condensed.coordinates())?,
+                dw: vector(condensed.coordinates())?,
+                x: vector(condensed.ndof())?,
+                dx: vector(condensed.ndof())?,
+            },
             last: Vec::new(),
             known: try_vec(set.numbers().len(), false, CONTEXT)?,
         })
     }
 
-    /// Reads the gauges at `v` = (u, ω) along a direction of as many numbers: one of them, or all. The signals of all are known
-    /// after either, in the harmonics that were read: a peak is found by one gauge, and recorded with all.
+    /// Reads gauge number `one`, or all of them, at `v` = (u, ω) along a direction of as many numbers. Either way the
+    /// signals of all gauges are then known in the harmonics that were read: a peak is found by one gauge, and
+    /// recorded with all.
     ///
     /// # Errors
     /// `Singular` at an undamped resonance; those of callbacks; `OutOfMemory`; `StoppedByCaller`.
@@ -194,19 +203,20 @@ impl<'a> Gauges<'a> {
                 self.forces.evaluate(u, omega)?;
                 evaluated = true;
             }
-            for (c, (w, dw)) in self.w.iter_mut().zip(&mut self.dw).enumerate() {
+            for (c, (w, dw)) in self.motion.w.iter_mut().zip(&mut self.motion.dw).enumerate() {
                 *w = self.forces.minus_reference(u, c, i);
                 *dw = self.forces.along(along, c, i) + self.forces.by_omega(c, i) * d_omega;
             }
-            let (x, dx) = (&mut self.x, &mut self.dx);
+            let (x, dx) = (&mut self.motion.x, &mut self.motion.dx);
             let at = (i, omega);
-            self.workspace.recover(condensed, i, omega, &self.w, x, interrupt)?;
             self.workspace
-                .recover_along(condensed, at, (&self.dw, d_omega), x, dx, interrupt)?;
-            for (c, y) in self.w.iter_mut().enumerate() {
+                .recover(condensed, i, omega, &self.motion.w, x, interrupt)?;
+            self.workspace
+                .recover_along(condensed, at, (&self.motion.dw, d_omega), x, dx, interrupt)?;
+            for (c, y) in self.motion.w.iter_mut().enumerate() {
                 *y = set.get_at(u, c * m, i);
             }
-            near_rigid_motion::correct(&mut self.workspace, condensed, at, &self.w, x, interrupt)?;
+            near_rigid_motion::correct(&mut self.workspace, condensed, at, &self.motion.w, x, interrupt)?;
             for (r, gauge) in self.all.iter().enumerate() {
                 let (factor, d_factor) = gauge.factor(number, omega);
                 let (value, change) = (gauge.along(i, x), gauge.along(i, dx));
@@ -279,7 +289,7 @@ impl<'a> Gauges<'a> {
 }
 
 impl Gauges<'_> {
-    /// Position of the harmonic that a gauge measures; `None` where the motion does not have it.
+    /// Index among the carried harmonics of the one that a gauge measures; `None` where it is not carried.
     pub fn harmonic(&self, r: usize) -> Option<usize> {
         let set = self.condensed.set();
         match self.all[r].measure {
@@ -295,8 +305,8 @@ impl Gauges<'_> {
         gauge.factor(self.condensed.set().numbers()[i], omega).0 * gauge.along(i, x)
     }
 
-    /// The derivatives of its part along `turn`, Re(turn* X), where the amplitude is X: of the real part for 1, of the imaginary part
-    /// for i.
+    /// Derivatives of a part of the amplitude X along `turn`, Re(turn* X): of the real part for turn = 1, of the
+    /// imaginary part for i.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -328,10 +338,10 @@ impl Gauges<'_> {
 
 /// The derivatives of a measure m, dm = Σ Re(gₕᴴ dxₕ) + (∂m/∂ω) dω.
 pub struct Derivatives {
-    /// m
+    /// The measure m.
     pub value: f64,
-    /// gₕ over the coordinates of the condensed model, harmonic after harmonic of those carried.
+    /// gₕ over the coordinates of the condensed model, for each carried harmonic.
     pub by_motion: Vec<Complex64>,
-    /// ∂m/∂ω at a fixed motion: only velocities and accelerations have it.
+    /// ∂m/∂ω at a fixed motion: nonzero for velocities and accelerations alone.
     pub by_omega: f64,
 }

@@ -13,6 +13,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::factors::lu::Lu;
 use crate::linalg::newton::linear_system::{Jacobian, MatrixFree};
 use crate::linalg::norm;
+use crate::options::Range;
 use crate::options::Response;
 use crate::problem::contact_forces::ContactForces;
 use crate::problem::gauges::{Gauges, Seen};
@@ -44,41 +45,43 @@ const UNBALANCED: f64 = 1e-2;
 /// Kind: tuned; measured on: not recorded.
 const LEAST_LINEAR_MOTION: f64 = 1e-6;
 
-/// The forced response of a condensed model.
+/// The forced response of a condensed model as equations over the frequency.
 pub struct HarmonicBalance<'a> {
     pub(super) condensed: &'a Condensed,
-    /// In a box, as other parts of problems: values that calls pass on take little of a small stack.
+    /// Contact forces, in a box as other parts of problems are: calls that pass them by value then need little of a
+    /// small stack.
     pub(super) forces: Box<ContactForces<'a>>,
     pub(super) tables: FrequencyCache,
     /// Index of the observed harmonic among the carried ones.
     observed: usize,
     given: Option<Vec<f64>>,
-    /// Whether the static solution is not zero, because a contact is preloaded or a law has a force at rest.
+    /// Whether the static solution is not zero, because a contact is preloaded or a law has a static force.
     loaded_at_rest: bool,
-    /// One number per coordinate, for a column of the Jacobian.
+    /// Memory: one number per coordinate, for a column of the Jacobian.
     pub(super) sum: Vec<Complex64>,
-    /// G in the layout of [`ContactForces::couple_all`].
+    /// Flexibility G in the layout of [`ContactForces::couple_all`].
     flexibility: Vec<Complex64>,
-    /// Per harmonic the derivatives of motions by the frequency under forces that do not change, where tables lack slopes.
+    /// Per harmonic, the derivatives of the motions by the frequency under constant forces, where tables lack slopes.
     along: Vec<Complex64>,
-    /// One packed signal.
+    /// Memory: one packed signal.
     pub(super) change: Vec<f64>,
     pub(super) products: ProductMemory,
-    /// Further responses, and what the last reading of one found.
+    /// Further responses; and the values that the last reading of one found.
     gauges: Option<Box<Gauges<'a>>>,
     seen: Vec<Seen>,
 }
 
-/// Memory of products with the Jacobian; that for systems which are solved by iteration is allocated by the first of them.
+/// Memory of products with the Jacobian. The part for systems that are solved by iteration is allocated by the first
+/// product.
 #[derive(Default)]
 pub(super) struct ProductMemory {
     pub change: Vec<f64>,
-    /// Numbers of one harmonic, and memory for its product.
+    /// Memory: numbers of one harmonic, and their product.
     pub harmonic: [Vec<Complex64>; 2],
     pub column: Vec<f64>,
-    /// Stored contact Jacobians.
+    /// Contact Jacobians of an earlier point.
     pub kept: Vec<f64>,
-    /// Means over the sectors, where the structure is a whole wheel.
+    /// Means of Newton's matrix over the sectors, where the structure is a whole wheel; else `None`.
     pub ring: Option<Box<RingBlocks>>,
 }
 
@@ -87,11 +90,11 @@ impl<'a> HarmonicBalance<'a> {
     /// carried harmonic above zero. `samples` = 0 locates events exactly; `given` is a packed initial guess.
     ///
     /// # Errors
-    /// `OutOfMemory`; those of callbacks, whose force at rest is evaluated; `StoppedByCaller`.
+    /// `OutOfMemory`; those of callbacks, whose force at zero motion is evaluated; `StoppedByCaller`.
     pub fn new(
         condensed: &'a Condensed,
         response: usize,
-        range: (f64, f64),
+        range: Range,
         samples: usize,
         given: Option<Vec<f64>>,
         interrupt: &'a Interrupt<'a>,
@@ -104,7 +107,7 @@ impl<'a> HarmonicBalance<'a> {
             .saturating_mul(coordinates)
             .saturating_mul(set.numbers().len());
         let loaded_at_rest =
-            condensed.is_preloaded() || static_force(condensed, range.0, samples, interrupt)?.is_some();
+            condensed.is_preloaded() || static_force(condensed, range.start, samples, interrupt)?.is_some();
         Ok(Self {
             condensed,
             forces: Box::new(ContactForces::new(condensed, samples, interrupt)?),
@@ -127,7 +130,7 @@ impl<'a> HarmonicBalance<'a> {
         })
     }
 
-    /// Watches further responses.
+    /// Adds further `responses`, which are observed at solved points.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -140,7 +143,7 @@ impl<'a> HarmonicBalance<'a> {
         Ok(())
     }
 
-    /// All further responses at `v` = (u, ω), with their derivatives along a direction.
+    /// Reads all further responses at `v` = (u, ω), with their derivatives along a direction.
     ///
     /// # Errors
     /// Those of [`Gauges::read`].
@@ -152,12 +155,12 @@ impl<'a> HarmonicBalance<'a> {
         }
     }
 
-    /// Makes the flexibility of the harmonics from modes where they are given: at fixed frequencies only.
+    /// Makes the flexibility of the harmonics from the given modes. This is for fixed frequencies only.
     pub fn set_modes(&mut self, modal: Vec<Option<ModalTable>>) {
         self.tables.set_modes(modal);
     }
 
-    /// How the flexibility is made along a sweep, and why so.
+    /// How the flexibility is made along a sweep, and why in this way.
     #[must_use]
     pub fn flexibility_way(&self) -> FlexibilityWay {
         self.tables.flexibility_way()
@@ -191,7 +194,7 @@ impl<'a> HarmonicBalance<'a> {
         self.forces.linearisation_scale(u, omega)
     }
 
-    /// Residual at the frequency `omega` and its derivative by ω, or by the parameter `p` of a path.
+    /// Residual at the frequency `omega` and its derivative by ω, or by the parameter p of a path.
     fn evaluate_at(&mut self, u: &[f64], omega: f64, path: Option<(Path, f64)>, out: &mut Residual) -> Result<()> {
         let scale = match path {
             Some((Path::ScaledLaws, p)) => p.exp(),
@@ -213,7 +216,7 @@ impl<'a> HarmonicBalance<'a> {
         self.balance(u, path, out)
     }
 
-    /// The residual of a single relative motion, with the forces at `u`.
+    /// Residual of a single relative motion with the contact forces at `u`.
     fn balance_single(&self, u: &[f64], out: &mut Residual) {
         let force = SingleForce {
             force: self.forces.forces(),
@@ -225,7 +228,7 @@ impl<'a> HarmonicBalance<'a> {
         single_balance::balance(of, u, &force, |i| self.condensed.kappa(0, i), out);
     }
 
-    /// The residual with the forces at `u`.
+    /// Residual with the contact forces at `u`.
     pub(super) fn balance(&mut self, u: &[f64], path: Option<(Path, f64)>, out: &mut Residual) -> Result<()> {
         let lacks_slopes = path.is_none() && self.tables.lacks_slopes();
         if lacks_slopes {
@@ -306,7 +309,7 @@ impl<'a> HarmonicBalance<'a> {
         Ok(())
     }
 
-    /// Fills `along` for the harmonics whose tables lack slopes, with the forces at `u`; 0 for the others.
+    /// Fills the slopes `along` for harmonics whose tables lack slopes, with the forces at `u`; the others become 0.
     fn find_slopes_along(&mut self, u: &[f64]) -> Result<()> {
         let (coordinates, harmonics) = (self.condensed.coordinates(), self.condensed.set().numbers().len());
         let outputs = coordinates + 1;
@@ -396,13 +399,13 @@ impl<'a> HarmonicBalance<'a> {
         }
     }
 
-    /// Number of unknowns.
+    /// Number of unknowns: the packed relative motions.
     #[must_use]
     pub fn unknowns(&self) -> usize {
         self.condensed.unknowns()
     }
 
-    /// The carried harmonics.
+    /// The set of carried harmonics.
     #[must_use]
     pub fn set(&self) -> &'a HarmonicSet {
         self.condensed.set()
@@ -558,7 +561,8 @@ impl Problem for HarmonicBalance<'_> {
         Ok(Some(PathHomotopy::between((start, 0.0), self, Path::ScaledLaws, p)))
     }
 
-    /// Damping absorbs the power of the forces; without damping, resonances are the exception.
+    /// Bounded solutions exist with damping, which absorbs the power of the forces. Without damping, resonances are
+    /// the exception.
     fn is_bounded(&self) -> bool {
         true
     }

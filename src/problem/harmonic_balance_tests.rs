@@ -39,7 +39,7 @@ fn chain(sliders: usize) -> Model {
 #[test]
 fn derivatives_by_the_frequency_are_differences_for_few_contacts_and_for_many() {
     let interrupt = Interrupt::none();
-    let (range, omega) = ((1.0, 2.0), 1.37);
+    let (range, omega) = ((1.0, 2.0).into(), 1.37);
     for sliders in [3, 63, 64, 65, 80] {
         let model = chain(sliders);
         let options = SolverOptions {

@@ -18,23 +18,23 @@ const HOMOTOPY_PATIENCE: usize = 60;
 /// The meaning of the parameter of a homotopy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Path {
-    /// ln s of the factor by which the motion in the laws is reduced.
+    /// Parameter ln s, where s is the factor by which the motion in the laws is reduced.
     ScaledLaws,
     /// Factor on the forces that vibrate; constant ones act in full.
     GrowingLoad,
-    /// Share α of the laws in α f + (1 − α) T y, T their tangents at the static state; of nonlinear modes only.
+    /// Share α of the laws in α f + (1 − α) T y, with their tangents T at the static state; for nonlinear modes only.
     FromTangents,
 }
 
 /// A problem that can be evaluated along a path at a fixed parameter of its own.
 pub trait AlongPath: Jacobian {
-    /// Residual at (u, p), p along the path, and its derivative by p.
+    /// Residual at (u, p), where p is the parameter of the path, and its derivative by p.
     ///
     /// # Errors
     /// Those of [`Problem::evaluate`].
     fn evaluate_along(&mut self, path: Path, fixed: f64, u: &[f64], p: f64, out: &mut Residual) -> Result<()>;
 
-    /// The observed amplitude and its derivative, see [`Problem::observe`].
+    /// The observed amplitude and its derivative along the path, see [`Problem::observe`].
     fn observe_along(&self, path: Path, u: &[f64], direction: &[f64]) -> (Complex64, Complex64);
 }
 

@@ -57,7 +57,7 @@ mod tests {
             ..SolverOptions::default()
         };
         let condensed = Condensed::new(&model, &options, range, &interrupt).unwrap();
-        let mut problem = HarmonicBalance::new(&condensed, 8, range, 0, None, &interrupt).unwrap();
+        let mut problem = HarmonicBalance::new(&condensed, 8, range.into(), 0, None, &interrupt).unwrap();
         let n = problem.unknowns();
         let mut at = Residual::new(n).unwrap();
         let mut compared = 0;

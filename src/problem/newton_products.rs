@@ -12,9 +12,9 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the products of the forced response";
 
-/// Equations on packed harmonics of the relative motions, with products.
+/// Equations on packed harmonics of the relative motions, which provide products with their Jacobian.
 pub trait PackedHarmonics: Problem + MatrixFree {
-    /// The carried harmonics.
+    /// The set of carried harmonics.
     fn harmonics(&self) -> &HarmonicSet;
 }
 
@@ -123,7 +123,7 @@ impl MatrixFree for HarmonicBalance<'_> {
 }
 
 impl HarmonicBalance<'_> {
-    /// out = J d with the contact Jacobians that the forces hold.
+    /// out ← J d with the contact Jacobians at the point last evaluated.
     pub(super) fn multiply_current(&mut self, d: &[f64], out: &mut [f64]) {
         let set = self.condensed.set();
         let m = set.packed_len();

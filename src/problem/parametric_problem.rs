@@ -8,13 +8,13 @@ use num_complex::Complex64;
 /// [`Jacobian`], which a linear system requests.
 #[derive(Clone, Debug)]
 pub struct Residual {
-    /// R
+    /// R, one number per equation.
     pub values: Vec<f64>,
-    /// ∂R/∂p
+    /// ∂R/∂p, one number per equation.
     pub d_parameter: Vec<f64>,
-    /// Size to which the residual is relative.
+    /// Size of motions with which the residual is compared.
     pub scale: f64,
-    /// Size that rounding alone may leave of the residual, where stiff contacts make it large; otherwise 0.
+    /// Size of residual that rounding alone may cause, where stiff contacts make it large; otherwise 0.
     pub rounding: f64,
 }
 
@@ -38,9 +38,9 @@ impl Residual {
 pub enum InitialGuess {
     /// The caller's guess, if there is one.
     Given,
-    /// All contacts in their state at small motion: stuck, or open.
+    /// All contacts in the linear state that they have at small motion: stuck, or open.
     Stuck,
-    /// All contacts replaced by their reference stiffness: bounded also where the stuck structure resonates without
+    /// All contacts replaced by their reference stiffness: bounded even where the stuck structure resonates without
     /// damping.
     Reference,
 }
@@ -49,26 +49,27 @@ pub enum InitialGuess {
 pub struct Homotopy<'a> {
     /// The homotopy as a problem with a parameter of its own.
     pub problem: Box<dyn Problem + 'a>,
-    /// Parameter at which it is easy to solve from the initial guess.
+    /// Parameter at which the homotopy is easy to solve from the initial guess.
     pub start: f64,
-    /// Parameter at which it is the given problem.
+    /// Parameter at which the homotopy equals the given problem.
     pub end: f64,
-    /// Points without progress after which it is given up: it then follows a motion that grows without bound.
+    /// Number of points without progress after which the homotopy is given up: it then follows a motion that grows
+    /// without bound.
     pub patience: usize,
 }
 
-/// One end of a step along the branch.
+/// One of the two ends of a step along the branch.
 pub struct End<'a> {
-    /// u, and its norm.
+    /// Unknowns u of the end, and their norm.
     pub unknowns: &'a [f64],
     pub size: f64,
     /// Direction of the branch in (u, p).
     pub tangent: &'a [f64],
-    /// Factor that makes this direction the derivative by the arc length.
+    /// Factor that turns the tangent into the derivative by the arc length.
     pub unit: f64,
 }
 
-/// A problem R(u, p) = 0 with one parameter. Its Jacobian is that of the point last evaluated.
+/// A problem R(u, p) = 0 with one parameter. Its Jacobian belongs to the point last evaluated.
 pub trait Problem: Jacobian {
     /// Residual and its derivative by the parameter at (u, p).
     ///
@@ -80,8 +81,8 @@ pub trait Problem: Jacobian {
     /// numbers, the parameter last).
     fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64);
 
-    /// A further response at a solved point v = (u, p) and its derivative along `direction`; `None`: the problem has none. The
-    /// point evaluated last remains what it is.
+    /// A further response at a solved point v = (u, p) and its derivative along `direction`; `None` if the problem
+    /// has none. The state of the last evaluation is not changed.
     ///
     /// # Errors
     /// Those of [`Self::evaluate`].
@@ -95,8 +96,8 @@ pub trait Problem: Jacobian {
     /// Those of [`Self::evaluate`].
     fn initial_guess(&mut self, kind: InitialGuess, p: f64, u: &mut [f64]) -> Result<bool>;
 
-    /// A homotopy that ends at this problem at fixed `p`, and is easy to solve at its start from `u`: the stuck
-    /// guess, or rest if there is none. `None`: the problem has no homotopy.
+    /// A homotopy that ends at this problem at fixed `p`, and is easy to solve at its start from `u`: from the stuck
+    /// guess, or from zero if there is none. `None`: the problem has no homotopy.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -118,13 +119,13 @@ pub trait Problem: Jacobian {
         Ok(false)
     }
 
-    /// Whether the matrix jumps along the branch, wherever an event passes a sample.
+    /// Whether the Jacobian jumps along the branch, wherever an event of a sampled law passes a sample.
     fn has_kinks(&self) -> bool {
         false
     }
 
-    /// Share of a step of this length along the branch at which something resonates that the step passes as a whole; `None` where
-    /// nothing does.
+    /// Position of a resonance within a step along the branch, as a share of its length, that the two ends alone do
+    /// not show; `None` where there is none.
     fn resonance_between(&self, _a: &End<'_>, _b: &End<'_>, _length: f64) -> Option<f64> {
         None
     }
@@ -133,7 +134,7 @@ pub trait Problem: Jacobian {
     /// branch. Derivatives by the parameter may then be zero.
     fn set_pointwise(&mut self, _pointwise: bool) {}
 
-    /// Selects an evaluation as accurate as that, with accurate derivatives by the parameter as well.
+    /// Selects an evaluation as accurate as `set_pointwise` does, with accurate derivatives by the parameter as well.
     fn set_factorised(&mut self, _factorised: bool) {}
 }
 

@@ -30,7 +30,8 @@ const OPPOSITE: f64 = -0.5;
 /// Kind: tuned; measured on: not recorded.
 const ALIKE: f64 = 2.0;
 
-/// Share of the step, of this length, from `a` to `b` at which a harmonic resonates between them; that of the first one.
+/// Position, as a share of the step length, at which a harmonic resonates between the ends `a` and `b`; the first one
+/// where several do.
 pub(super) fn between(set: &HarmonicSet, a: &End<'_>, b: &End<'_>, length: f64) -> Option<f64> {
     let least = RELEVANT * a.size.max(b.size);
     let mut base: Option<(usize, usize)> = None;
@@ -57,8 +58,8 @@ pub(super) fn between(set: &HarmonicSet, a: &End<'_>, b: &End<'_>, length: f64) 
     first
 }
 
-/// Bound of the change of a harmonic whose motion at `b` is shifted by this angle at most: that without the shift, and the
-/// angle times its size.
+/// Upper bound of the change of a harmonic whose motion at `b` is shifted by at most `angle`: the change without the
+/// shift, plus the angle times the size of the motion.
 fn largest_change(set: &HarmonicSet, i: usize, (a, b): (&End<'_>, &End<'_>), angle: f64) -> f64 {
     let (m, mut first) = (set.packed_len(), set.offset(i));
     let (mut change, mut size) = (0.0, 0.0);
@@ -70,7 +71,7 @@ fn largest_change(set: &HarmonicSet, i: usize, (a, b): (&End<'_>, &End<'_>), ang
     change.sqrt() + angle * size.sqrt()
 }
 
-/// The complex number that begins there; `None` beyond the end.
+/// The complex number stored at position `at` and the next one; `None` beyond the end.
 #[inline]
 fn pair(packed: &[f64], at: usize) -> Option<Complex64> {
     match packed.get(at..at + 2)? {
@@ -82,7 +83,7 @@ fn pair(packed: &[f64], at: usize) -> Option<Complex64> {
 /// Shift of time from one end to the other: a factor e^{−iφ} for the motion at the other end, and −iφ′ at both.
 struct Shift {
     turn: Complex64,
-    /// Bound of |φ|.
+    /// Upper bound of the phase |φ|.
     angle: f64,
     rates: (Complex64, Complex64),
 }
@@ -94,7 +95,7 @@ impl Shift {
         rates: (Complex64::ZERO, Complex64::ZERO),
     };
 
-    /// The shift of a harmonic.
+    /// The shift of time between the ends, by the phase of the i-th harmonic.
     fn of(set: &HarmonicSet, i: usize, a: &End<'_>, b: &End<'_>) -> Self {
         let product = |x: &[f64], y: &[f64]| {
             let (m, mut first) = (set.packed_len(), set.offset(i));
@@ -125,7 +126,7 @@ impl Shift {
         }
     }
 
-    /// The shift in a harmonic of so many times that one's number.
+    /// The shift in a harmonic whose number is `order` times that of this one.
     fn in_harmonic(&self, order: usize) -> Self {
         Self {
             turn: self.turn.powu(order as u32),
@@ -135,7 +136,7 @@ impl Shift {
     }
 }
 
-/// One harmonic of all coordinates at the ends of a step: squares of its change and its derivatives, and their products.
+/// One harmonic of all coordinates at the ends of a step: squares and products of its change and its derivatives.
 #[derive(Default)]
 struct Passage {
     change: f64,
@@ -146,7 +147,7 @@ struct Passage {
 }
 
 impl Passage {
-    /// The passage; `None` where it changes by less than `least`, or as it does away from a pole.
+    /// Data of the i-th harmonic; `None` where it changes by less than `least`, or as it does away from a pole.
     fn of(set: &HarmonicSet, i: usize, (a, b): (&End<'_>, &End<'_>), shift: &Shift, least: f64) -> Option<Self> {
         let mut sums = Self::default();
         let (m, at) = (set.packed_len(), set.offset(i));
@@ -177,12 +178,13 @@ impl Passage {
         Some(sums)
     }
 
-    /// Whether the change and a derivative of this square have opposite directions.
+    /// Whether the change and a derivative point in opposite directions, from their product `along` and the square
+    /// `size` of the derivative.
     fn is_opposite(&self, along: f64, size: f64) -> bool {
         along < OPPOSITE * (self.change * size).sqrt()
     }
 
-    /// Place of a pole in the step, as a share of its length; `None` where there is none.
+    /// Position of a pole within the step, as a share of its length; `None` where there is none.
     fn pole(&self, length: f64) -> Option<f64> {
         if !self.is_opposite(self.along_behind, self.behind) {
             return None;

@@ -10,7 +10,7 @@ use crate::fourier::HarmonicSet;
 /// Kind: tuned; measured on: not recorded.
 pub(super) const MEAN_SHARE: f64 = 1e-4;
 
-/// Sum of squares of a vibration, and of the mean.
+/// Sums of squares of a motion: of its vibration, and of its mean.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Squares {
     pub vibration: f64,
@@ -18,7 +18,7 @@ pub(super) struct Squares {
 }
 
 impl Squares {
-    /// Those of packed motions.
+    /// Sums of squares of packed motions.
     pub fn of(set: &HarmonicSet, packed: &[f64]) -> Self {
         let means = usize::from(set.has_mean());
         let squares = |part: &[f64]| part.iter().map(|x| x * x).sum::<f64>();
@@ -31,7 +31,7 @@ impl Squares {
         found
     }
 
-    /// The size of two motions together; where nothing vibrates, that of their means.
+    /// Size of two motions together, by their vibration; by their means where nothing vibrates.
     pub fn size(self, other: Self) -> f64 {
         let vibration = self.vibration.sqrt() + other.vibration.sqrt();
         let mean = self.mean.sqrt() + other.mean.sqrt();

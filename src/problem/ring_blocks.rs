@@ -20,28 +20,29 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the waves of a wheel";
 
-/// The wheel, with memory for its means.
+/// The sectors of a wheel, with memory for the means of Newton's matrix over them.
 pub(super) struct RingBlocks {
     sectors: usize,
     /// Coordinates of a sector, and length of a packed signal.
     coordinates: usize,
     m: usize,
-    /// λ of the carried harmonics, and of those that vibrate.
+    /// Phase factor λ of each carried harmonic, and of each vibrating one.
     lags: Vec<Complex64>,
     pairs: Vec<Complex64>,
-    /// A, and the mean of the floors of the means per coordinate.
+    /// Mean Jacobian A; and per coordinate the mean of the terms added to the diagonal of its mean motion.
     jacobian: Vec<f64>,
     floors: Vec<f64>,
-    /// g_d, harmonic after harmonic, distance after distance, force after force.
+    /// Mean flexibility g_d: harmonic after harmonic, distance after distance, force after force.
     flexibility: Vec<Complex64>,
-    /// One block of a contact.
+    /// Memory: one block ∂f/∂y of a contact.
     block: Vec<f64>,
-    /// Share of the contact Jacobians in which sectors differ from A, where A is that of the motion evaluated last.
+    /// Share of the contact Jacobians in which sectors differ from A; `None` where A does not belong to the motion
+    /// evaluated last.
     unlikeness: Option<f64>,
 }
 
 impl RingBlocks {
-    /// Those of a condensed model; `None` where it is no wheel, or the contacts of its sectors differ.
+    /// Memory for a condensed model; `None` where it is no wheel, or the contacts of its sectors differ.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -91,8 +92,8 @@ impl RingBlocks {
         }
     }
 
-    /// Takes the means at the motion that the forces were evaluated at last; `flexibility` returns G of a harmonic, force after force
-    /// at a distance of `stride`.
+    /// Computes the means at the motion where the forces were evaluated last; `flexibility` returns G of a harmonic,
+    /// force after force at a distance of `stride`.
     pub fn average<'g>(
         &mut self,
         (condensed, forces): (&Condensed, &ContactForces<'_>),
@@ -124,13 +125,13 @@ impl RingBlocks {
         }
     }
 
-    /// Tells that the forces are evaluated at another motion.
+    /// Marks the means as outdated: the forces are evaluated at another motion.
     pub fn forget(&mut self) {
         self.unlikeness = None;
     }
 
-    /// Share of the Jacobians of contacts minus κ, by their norm, in which sectors differ from the mean of all: a turn of time leaves
-    /// their squares as they are, so that the squares of the differences are those of all less those of the mean.
+    /// Share, by the norm, in which the Jacobians of contacts minus κ differ between the sectors. A shift of time
+    /// leaves squares unchanged, so that the squared differences sum to the squares of all minus those of the mean.
     pub fn unlikeness(&mut self, condensed: &Condensed, forces: &ContactForces<'_>) -> f64 {
         if let Some(known) = self.unlikeness {
             return known;
@@ -192,7 +193,7 @@ impl RingBlocks {
         squares
     }
 
-    /// B_p of the means, column-major.
+    /// Fills in the mean matrix B_p of wave p, column-major.
     pub fn fill(&self, condensed: &Condensed, wave: usize, matrix: &mut [Complex64]) -> Result<()> {
         let (n, k, m) = (self.sectors, self.coordinates, self.m);
         let order = k * m;
@@ -237,7 +238,8 @@ impl RingBlocks {
     }
 }
 
-/// Whether the contacts of each sector act on the coordinates of that sector alone, as those of the first one do on its own.
+/// Whether the contacts of each sector act on the coordinates of that sector alone, in the pattern of the first
+/// sector.
 fn are_alike(condensed: &Condensed, sectors: usize) -> bool {
     let (laws, k) = (condensed.laws(), condensed.coordinates() / sectors);
     if !laws.len().is_multiple_of(sectors) || !condensed.contacts().is_multiple_of(sectors) {

@@ -40,7 +40,7 @@ fn the_waves_are_the_matrix_of_a_tuned_wheel_and_nearly_that_of_a_mistuned_one_a
         (&mistuned, (0.2, true), 12),
     ] {
         let condensed = condensed(wheel, 9);
-        let mut problem = HarmonicBalance::new(&condensed, 8, (0.6, 0.9), 0, None, &none).unwrap();
+        let mut problem = HarmonicBalance::new(&condensed, 8, (0.6, 0.9).into(), 0, None, &none).unwrap();
         let (n, set) = (problem.unknowns(), condensed.set());
         let (m, k) = (set.packed_len(), condensed.coordinates() / SECTORS);
         let mut u = vec![0.0; n];

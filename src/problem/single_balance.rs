@@ -7,18 +7,19 @@ use crate::problem::parametric_problem::Residual;
 use crate::problem::residual_scale::Squares;
 use num_complex::Complex64;
 
-/// The contact at one motion.
+/// Force of the contact at one motion.
 pub(super) struct SingleForce<'a> {
-    /// Packed force and its derivative by ω.
+    /// Packed contact force and its derivative by ω.
     pub force: &'a [f64],
     pub by_omega: &'a [f64],
     /// Whether the force is κ y, so that nothing couples back.
     pub is_inactive: bool,
-    /// Rounding of the force.
+    /// Rounding error of the contact force.
     pub rounding: f64,
 }
 
-/// With κ of each carried harmonic: R = y − y_lin + G w and ∂R/∂ω = −∂y_lin + ∂G w + G ∂f/∂ω with w = f − κ y, and their scales.
+/// Residual R = y − y_lin + G w and slope ∂R/∂ω = −∂y_lin + ∂G w + G ∂f/∂ω with w = f − κ y, and their scales;
+/// `kappa` returns κ of each carried harmonic.
 pub(super) fn balance(
     (set, tables): (&HarmonicSet, &[Table]),
     u: &[f64],
@@ -97,7 +98,7 @@ mod tests {
                 ..SolverOptions::default()
             };
             let condensed = Condensed::new(&model, &options, (0.3, 2.0), &interrupt).unwrap();
-            let mut problem = HarmonicBalance::new(&condensed, 8, (0.3, 2.0), 0, None, &interrupt).unwrap();
+            let mut problem = HarmonicBalance::new(&condensed, 8, (0.3, 2.0).into(), 0, None, &interrupt).unwrap();
             let n = problem.size();
             let make = || Residual::new(n).unwrap();
             let (mut quick, mut slow) = (make(), make());

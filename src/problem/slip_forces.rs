@@ -24,7 +24,8 @@ impl HarmonicBalance<'_> {
         slips
     }
 
-    /// The change of the observed amplitude with the same, besides that by the motions.
+    /// Change of the observed amplitude with the logarithm of the slip limit of a coordinate at fixed motions of the
+    /// contacts.
     #[must_use]
     pub fn observed_by_slip_limit(&self, coordinate: usize) -> Complex64 {
         let (i, coordinates) = (self.observed(), self.condensed.coordinates());

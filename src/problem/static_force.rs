@@ -7,11 +7,11 @@ use crate::error::{Result, fail, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 
-/// The first contact with a force at rest, at the angular frequency `omega`. A law that cannot be evaluated at rest
-/// is skipped.
+/// The first contact whose force at zero motion is not zero, at the angular frequency `omega`. A law that cannot be
+/// evaluated at zero motion is skipped.
 ///
 /// # Errors
-/// `Argument` for a law that is declared odd and has a force at rest; those of callbacks.
+/// `Argument` for a law that is declared odd and has a force at zero motion; those of callbacks.
 pub fn static_force(
     condensed: &Condensed,
     omega: f64,

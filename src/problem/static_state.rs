@@ -3,12 +3,12 @@
 use crate::error::{Result, try_copy};
 use crate::model::natural_modes::static_tangents::StaticTangents;
 
-/// The static state; the default is that of a model without constant forces and preload, which is at rest at zero.
+/// The static state under constant forces and preload. The default belongs to a model without these: zero motion.
 #[derive(Clone, Debug, Default)]
 pub struct StaticState {
-    /// Motion of each relative coordinate, in the caller's unit; empty at rest at zero.
+    /// Motion of each relative coordinate, in the caller's unit; empty for zero motion.
     pub motion: Vec<f64>,
-    /// Motion of all independent degrees of freedom, in the caller's unit; empty likewise.
+    /// Motion of all independent degrees of freedom, in the caller's unit; empty for zero motion.
     pub structure: Vec<f64>,
     /// Tangent stiffness of the contacts.
     pub tangents: StaticTangents,
@@ -21,7 +21,7 @@ impl StaticState {
         !self.structure.is_empty()
     }
 
-    /// The same in another unit of lengths.
+    /// A copy in the unit `length`.
     ///
     /// # Errors
     /// `OutOfMemory`.

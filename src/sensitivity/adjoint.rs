@@ -9,25 +9,25 @@ pub(super) const CONTEXT: &str = "the sensitivities";
 
 /// Motion and adjoint motion of all independent degrees of freedom, harmonic after harmonic of those carried.
 pub(crate) struct Adjoint {
-    /// Angular frequency ω.
+    /// Angular frequency ω of the solution.
     pub omega: f64,
     /// Damping ratio D of the artificial damping of a nonlinear mode; 0 in a forced response.
     pub damping: f64,
     /// Packed relative motions of the coordinates in the solver's units, static ones included.
     pub relative: Vec<f64>,
-    /// X_h in the caller's units.
+    /// Motion X_h in the caller's units, harmonic after harmonic.
     pub motion: Vec<Complex64>,
-    /// Λ_h: the result changes by Re Λᴴ q under a load q in the caller's units.
+    /// Adjoint motion Λ_h: the result changes by Re Λᴴ q under a load q in the caller's units.
     pub field: Vec<Complex64>,
     /// Change of the result per change of X₁ᴴ M X₁ by M in the normalisation of a nonlinear mode; otherwise 0.
     pub normalisation: f64,
-    /// Whether vibrating forces act: not in a nonlinear mode.
+    /// Whether vibrating forces act; `false` in a nonlinear mode.
     pub is_forced: bool,
     /// Total derivative of the result by ω, in a forced response.
     pub by_omega: f64,
-    /// The amplitude of a forced response.
+    /// Amplitude of a forced response; 0 otherwise.
     pub amplitude: f64,
-    /// λ of a forced response.
+    /// Adjoint λ of the equations of a forced response.
     pub lambda: Vec<f64>,
 }
 

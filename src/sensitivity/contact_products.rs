@@ -12,7 +12,7 @@ use crate::model::matrices::wave::Wave;
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
 use std::sync::Arc;
 
-/// Products with the forces along the tangential directions and along the normal.
+/// Products with the forces along the tangential directions and along the normal, by which derivatives follow.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ContactProducts {
     tangential: Combination,
@@ -21,12 +21,12 @@ pub(crate) struct ContactProducts {
 
 /// A contact at a solution: its law, and its packed motions in the solver's units, direction after direction.
 pub(super) struct ContactMotion {
-    /// The law in the solver's units; `None` for one without relative coordinates.
+    /// The law in the solver's units; `None` for a contact without relative coordinates.
     pub law: Option<Arc<dyn Law>>,
     pub motion: Vec<f64>,
-    /// Packed adjoint motions.
+    /// Packed adjoint motions of the contact.
     pub field: Vec<f64>,
-    /// Position of the normal direction.
+    /// Index of the normal direction; `None` without one.
     normal: Option<usize>,
 }
 
@@ -69,7 +69,7 @@ impl ContactMotion {
         })
     }
 
-    /// The products, by an evaluation of the law at the motion.
+    /// Computes the products, by an evaluation of the law at the motion.
     ///
     /// # Errors
     /// Those of the law; `StoppedByCaller`.

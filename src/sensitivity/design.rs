@@ -35,7 +35,7 @@ impl Parameter<'_> {
         }
     }
 
-    /// Whether two parameters set the same constant or speed; factors and directions act one after the other.
+    /// Whether two parameters set one constant or the speed both; factors and directions act one after the other.
     pub(crate) fn sets_the_same_as(&self, other: &Self) -> bool {
         match (self, other) {
             (
@@ -53,8 +53,8 @@ impl Parameter<'_> {
         }
     }
 
-    /// Factor on the derivative of a model that has the value: a factor or a force is relative to the one that the model
-    /// has.
+    /// Factor on the derivative of a model to which the value was applied: a factor or a force then counts relative
+    /// to the value.
     pub(crate) fn relative_at(&self, value: f64) -> f64 {
         match self {
             Self::Force | Self::Factor { .. } => 1.0 / value,
@@ -68,8 +68,8 @@ impl Parameter<'_> {
     }
 }
 
-/// A copy of a model with values of its parameters, in their order. It has the bases that the model keeps, and adds its
-/// own to a list of its own.
+/// A copy of a model with values of its parameters, applied in their order. It uses the bases that the model keeps,
+/// and stores further ones in a list of its own.
 ///
 /// # Errors
 /// `Dimension` for another number of values; those of [`Parameter::apply`], naming the value.
@@ -77,8 +77,8 @@ pub(crate) fn design(model: &Model, parameters: &[Parameter<'_>], values: &[f64]
     with_values(model.separate_clone()?, parameters, values)
 }
 
-/// The same on the list of bases of the model itself, where the parameters leave its structure as it is: the next design has the bases
-/// that this one adds.
+/// A copy of a model as `design` makes it, which stores further bases in the list of the model, where the parameters
+/// do not change its structure: the next design can use them.
 ///
 /// # Errors
 /// As [`design`].

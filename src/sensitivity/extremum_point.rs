@@ -20,7 +20,8 @@ use crate::sensitivity::forced_point::ForcedPoint;
 /// Kind: tuned; measured on: not recorded.
 const EXTREMUM_POINT_STEP: f64 = 1e-4;
 
-/// The matrix B at the point evaluated last, column-major, for an unknown of which a change by 1 changes ω by `unit`.
+/// The matrix B at the point evaluated last, column-major, for a frequency unknown whose change by 1 changes ω by
+/// `unit`.
 pub(crate) fn extremum_matrix(
     jacobian: &[f64],
     (by_omega, by_motion, slope): (&[f64], &[f64], f64),
@@ -43,7 +44,8 @@ pub(crate) fn extremum_matrix(
     Ok(matrix)
 }
 
-/// Derivatives of the condition at (u, ω) by the motions and by ω; `unit` as that of the matrix, `length` the unit of lengths of u.
+/// Derivatives of the condition at (u, ω) by the motions and by ω; `unit` as for the matrix, `length` is the unit of
+/// lengths of u.
 ///
 /// # Errors
 /// Those of the model and of callbacks; `OutOfMemory`; `StoppedByCaller`.
@@ -101,7 +103,7 @@ impl ForcedPoint<'_> {
 }
 
 impl Borders {
-    /// The same in other harmonics, where the last number belongs to the frequency.
+    /// Transfers the borders to other harmonics, where their last number belongs to the frequency.
     pub fn transfer_with_frequency(&mut self, from: &HarmonicSet, to: &HarmonicSet, motions: usize) -> Result<()> {
         let last = [self.b.pop(), self.c.pop()];
         self.transfer(from, to, motions)?;

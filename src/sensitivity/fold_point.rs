@@ -27,7 +27,7 @@ const FOLD_POINT_ITERATIONS: usize = 3;
 /// Kind: rounding.
 const PERTURBATION: f64 = 1e-9;
 
-/// The vectors b and c.
+/// Border vectors b and c of the condition.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Borders {
     pub b: Vec<f64>,
@@ -36,24 +36,24 @@ pub(crate) struct Borders {
 
 /// The condition of a fold and its null vectors.
 pub(crate) struct FoldCondition {
-    /// Its value g: zero in a fold.
+    /// Value g of the condition: zero in a fold.
     pub value: f64,
-    /// Null vector of J in a fold.
+    /// Null vector v of J in a fold.
     pub v: Vec<f64>,
-    /// That of Jᵀ.
+    /// Null vector w of Jᵀ in a fold.
     pub w: Vec<f64>,
 }
 
-/// Derivatives of the condition.
+/// Derivatives of the condition of a fold.
 pub(crate) struct FoldGradient {
-    /// By the motions, then by ω.
+    /// Derivatives by the motions, then by ω.
     pub by_unknowns: Vec<f64>,
-    /// By the parameter.
+    /// Derivative by the parameter.
     pub by_parameter: f64,
 }
 
 impl Borders {
-    /// Borders near a fold, from the matrix there, column-major.
+    /// Borders for a point near a fold, from Newton's matrix at it, column-major.
     ///
     /// # Errors
     /// `OutOfMemory`; `Singular`; `StoppedByCaller`.
@@ -83,7 +83,7 @@ impl Borders {
         Ok(Self { b, c })
     }
 
-    /// The condition at a matrix, column-major.
+    /// The condition for a matrix, column-major.
     ///
     /// # Errors
     /// `OutOfMemory`; `Singular`; `StoppedByCaller`.
@@ -109,7 +109,8 @@ impl Borders {
         Ok(FoldCondition { value, v, w })
     }
 
-    /// Borders that follow the null vectors, in the sense of those before, so that the condition keeps its sign.
+    /// Replaces the borders by the null vectors, in the sense of the former borders, so that the condition keeps its
+    /// sign.
     pub fn follow(&mut self, at: &FoldCondition) -> Result<()> {
         // vᵀc = wᵀb = 1 in a fold: both senses are kept.
         self.b = try_copy(&at.w, CONTEXT)?;
@@ -119,7 +120,7 @@ impl Borders {
         Ok(())
     }
 
-    /// The same in other harmonics.
+    /// Transfers the borders to other harmonics.
     pub fn transfer(&mut self, from: &HarmonicSet, to: &HarmonicSet, n: usize) -> Result<()> {
         for x in [&mut self.b, &mut self.c] {
             let mut moved = try_vec(n, 0.0, CONTEXT)?;

@@ -11,6 +11,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::dot;
 use crate::linalg::newton::linear_system::Jacobian;
 use crate::model::few_motions::reduced_wave::MotionRow;
+use crate::options::Range;
 use crate::options::Response;
 use crate::problem::gauges::{Derivatives, Gauges};
 use crate::problem::harmonic_balance::HarmonicBalance;
@@ -25,30 +26,31 @@ pub(crate) struct ForcedPoint<'a> {
     pub(super) interrupt: &'a Interrupt<'a>,
     pub(super) problem: HarmonicBalance<'a>,
     workspace: Workspace,
-    /// Newton's matrix at the point linearised last.
+    /// Newton's matrix, with its factors, at the point linearised last.
     pub(super) system: NewtonFactors,
     at: Residual,
     response: MotionRow,
-    /// w = f − κ y of one harmonic.
+    /// Contact forces w = f − κ y of one harmonic.
     w: Vec<Complex64>,
-    /// ∂F/∂ω − ∂Z/∂ω x − Wᴴ ∂f/∂ω, harmonic after harmonic.
+    /// Load ∂F/∂ω − ∂Z/∂ω x − Wᴴ ∂f/∂ω, harmonic after harmonic.
     by_omega: Vec<Complex64>,
-    /// A response in place of the amplitude, with its derivatives at the point linearised last.
+    /// A response in place of the amplitude, with its derivatives at the point linearised last; `None`: the
+    /// amplitude.
     watched: Option<(Box<Gauges<'a>>, Option<Derivatives>)>,
     samples: usize,
 }
 
-/// A result A − λᵀR whose adjoint motion is wanted.
+/// A result A − λᵀR whose adjoint motion is requested.
 struct Wanted<'b> {
-    /// 0: the result is −λᵀR alone.
+    /// Amplitude in the result; 0: the result is −λᵀR alone.
     amplitude: Complex64,
     lambda: &'b [f64],
-    /// The derivatives of a watched response.
+    /// Derivatives of the watched response that takes the place of the amplitude.
     watched: Option<&'b Derivatives>,
 }
 
 impl Wanted<'_> {
-    /// The load of the adjoint motion in the i-th carried harmonic.
+    /// Writes the load of the adjoint motion in the i-th carried harmonic.
     fn fill(&self, (block, set, i): (&HarmonicBlock, &HarmonicSet, usize), field: &mut [Complex64]) {
         let (m, n) = (set.packed_len(), field.len());
         field.fill(Complex64::ZERO);
@@ -73,17 +75,18 @@ impl<'a> ForcedPoint<'a> {
     /// # Errors
     /// Those of the model and of callbacks; `OutOfMemory`; `StoppedByCaller`.
     pub fn new(condensed: &'a Condensed, at: (usize, usize), omega: f64, interrupt: &'a Interrupt<'a>) -> Result<Self> {
-        Self::over(condensed, at, (omega, omega), interrupt)
+        Self::over(condensed, at, omega.into(), interrupt)
     }
 
-    /// The same for solutions at frequencies of a range, over which flexibilities are sums where the curve has them from sums.
+    /// The equations for solutions at frequencies of a range, in which flexibilities are sums where the curve has
+    /// them as sums.
     ///
     /// # Errors
     /// As [`Self::new`].
     pub fn over(
         condensed: &'a Condensed,
         (response, samples): (usize, usize),
-        range: (f64, f64),
+        range: Range,
         interrupt: &'a Interrupt<'a>,
     ) -> Result<Self> {
         let problem = HarmonicBalance::new(condensed, response, range, samples, None, interrupt)?;
@@ -104,12 +107,13 @@ impl<'a> ForcedPoint<'a> {
         })
     }
 
-    /// Whether these are the equations of another solution, too.
+    /// Whether these equations are valid for another solution, too: same condensed model and samples.
     pub fn are_of(&self, condensed: &Condensed, samples: usize) -> bool {
         core::ptr::eq(self.condensed, condensed) && self.samples == samples
     }
 
-    /// Differentiates a response instead of the amplitude; one without degrees of freedom has the `default` one.
+    /// Differentiates a response in place of the amplitude; a response without degrees of freedom reads the `default`
+    /// one.
     pub fn watching(mut self, (response, default): (&Response<'_>, usize), samples: usize) -> Result<Self> {
         let (condensed, interrupt) = (self.condensed, self.interrupt);
         let one = (core::slice::from_ref(response), default);
@@ -184,7 +188,8 @@ impl<'a> ForcedPoint<'a> {
         Ok(seen.map_or(Complex64::ZERO, |(_, _, amplitude)| amplitude * self.condensed.length()))
     }
 
-    /// The harmonic of the watched response, its motion and amplitude at the point evaluated last, whose factors the workspace then has.
+    /// Index of the watched harmonic, with motion and amplitude, at the point evaluated last; the workspace then
+    /// holds the factors of this harmonic.
     fn observed_motion(&mut self, u: &[f64], omega: f64) -> Result<Option<(usize, Vec<Complex64>, Complex64)>> {
         let condensed = self.condensed;
         let Some(i) = self.watched.as_ref().and_then(|(gauges, _)| gauges.harmonic(0)) else {
@@ -309,8 +314,8 @@ impl<'a> ForcedPoint<'a> {
         Ok((gradient, amplitude))
     }
 
-    /// The adjoint motion of λ at the point linearised last, and what belongs to it, for the result A − λᵀR. With an
-    /// amplitude of 0 the result is −λᵀR alone.
+    /// The adjoint motion of λ at the point linearised last, for the result A − λᵀR. With an amplitude of 0 the
+    /// result is −λᵀR alone.
     ///
     /// # Errors
     /// As [`Self::adjoint`].
@@ -331,8 +336,8 @@ impl<'a> ForcedPoint<'a> {
         }
     }
 
-    /// The same for several λ of one point, with one factorisation per harmonic. Where the workspace has the factors of one harmonic with
-    /// its motion, it comes first.
+    /// Adjoint motions of several λ at one point, with one factorisation per harmonic. A harmonic whose factors and
+    /// motion the workspace already holds comes first.
     fn of_lambdas(
         &mut self,
         (u, omega): (&[f64], f64),
@@ -448,8 +453,9 @@ impl<'a> ForcedPoint<'a> {
         Ok(step)
     }
 
-    /// The change of the motions by the place of a slider that sticks through the period, with the stiffness of its spring along
-    /// a coordinate, at the point of which the adjoint was made last and at a fixed frequency: that under a constant load.
+    /// Change of the motions by the place of a slider that sticks through the period, with the stiffness of its
+    /// spring along a coordinate, as under a constant load: at a fixed frequency, at the point of which the adjoint
+    /// was made last.
     ///
     /// # Errors
     /// As [`Self::adjoint`].
@@ -484,12 +490,12 @@ impl<'a> ForcedPoint<'a> {
         &self.at.values
     }
 
-    /// Size to which it is relative.
+    /// Size of motions to which the residual is relative.
     pub fn scale(&self) -> f64 {
         self.at.scale
     }
 
-    /// Newton's matrix there.
+    /// Newton's matrix at the point linearised last, column-major.
     pub fn jacobian(&self) -> &[f64] {
         &self.system.matrix
     }

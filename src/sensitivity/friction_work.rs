@@ -20,9 +20,9 @@ use num_complex::Complex64;
 use std::f64::consts::PI;
 
 impl ForcedPoint<'_> {
-    /// Work per cycle of one law, in the caller's units, and its adjoint, at the point of which the adjoint of the amplitude was made last.
-    /// The law is evaluated by itself: others may act along the same relative motions. The total derivative of the adjoint by ω is that of
-    /// the work.
+    /// Work per cycle of one law, in the caller's units, and its adjoint, at the point of which the amplitude's
+    /// adjoint was made last. The law is evaluated by itself, since others may act along the same relative motions.
+    /// The total derivative of this adjoint by ω is the derivative of the work.
     ///
     /// # Errors
     /// As [`ForcedPoint::adjoint`].
@@ -75,8 +75,8 @@ impl ForcedPoint<'_> {
     }
 }
 
-/// The derivative of the work of a contact by a constant of its own at a fixed motion; 0 where its law does not have the constant or it
-/// exists on one side only.
+/// Derivative of the work of a contact by one of its constants at a fixed motion; 0 where its law does not have the
+/// constant, or the derivative exists on one side only.
 ///
 /// # Errors
 /// Those of the law; `OutOfMemory`, `StoppedByCaller`.

@@ -12,12 +12,12 @@ use crate::results::stored::mode_branch::ModePoint;
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
 use num_complex::Complex64;
 
-/// A result of a nonlinear mode.
+/// Result of a nonlinear mode that is differentiated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ModeQuantity {
-    /// Angular frequency.
+    /// Angular frequency of the mode.
     Omega,
-    /// Damping ratio.
+    /// Damping ratio of the mode.
     Damping,
 }
 
@@ -34,7 +34,8 @@ pub(crate) struct ModePointAdjoint<'a> {
 }
 
 impl ModePointAdjoint<'_> {
-    /// Packed relative motions about the static state per unit of amplitude, then the unknowns of frequency and damping.
+    /// Unknowns: packed relative motions about the static state per unit of amplitude, then those of frequency and
+    /// damping ratio.
     fn unknowns(&self) -> Result<Vec<f64>> {
         let condensed = self.condensed;
         let amplitude = 10f64.powf(self.point.log10_amplitude);

@@ -17,11 +17,11 @@ const CONTEXT: &str = "the factors of Newton's matrix";
 /// Newton's matrix, column-major, with its factors.
 pub(super) struct NewtonFactors {
     lu: Lu<f64>,
-    /// The whole matrix.
+    /// The whole matrix, column-major.
     pub matrix: Vec<f64>,
-    /// Which of its columns are not those of the identity.
+    /// For each column, whether it differs from that of the identity.
     pub active: Vec<bool>,
-    /// Numbers of the active unknowns, as many as the factors have, and their values.
+    /// Indices of the active unknowns, to which the factors belong; and memory for their values.
     numbers: Vec<usize>,
     values: Vec<f64>,
 }
@@ -115,7 +115,7 @@ impl NewtonFactors {
     }
 }
 
-/// Whether the k-th column is that of the identity but for rounding.
+/// Whether the k-th column is that of the identity up to rounding.
 fn is_identity(column: &[f64], k: usize) -> bool {
     let is_small = |(i, a): (usize, &f64)| (a - f64::from(u8::from(i == k))).abs() <= NEWTON_FACTORS_ROUNDING;
     column.iter().enumerate().all(is_small)

@@ -10,27 +10,27 @@ use crate::model::matrices::structure::MatrixKind;
 /// A parameter of a model.
 #[derive(Clone, Copy, Debug)]
 pub enum Parameter<'a> {
-    /// A factor on all forces, 1 at present.
+    /// A factor on all forces, whose present value is 1.
     Force,
     /// A constant of a contact.
     Contact {
-        /// The constant.
+        /// The constant of the contact.
         constant: Constant,
-        /// Number of the contact; `None`: the constant of all contacts that have it, changed together.
+        /// Index of the contact; `None`: the constant of all contacts that have it, changed together.
         contact: Option<usize>,
     },
-    /// The coefficient, 0 at present, of a matrix that is added to the mass, damping or stiffness matrix; in a cyclic
-    /// model to the sector's own block.
+    /// The coefficient, with present value 0, of a matrix that is added to the mass, damping or stiffness matrix; in
+    /// a cyclic model to the sector's own block.
     Direction {
-        /// Mass, damping or stiffness.
+        /// Matrix that is changed: mass, damping or stiffness.
         which: MatrixKind,
-        /// The matrix, over the caller's degrees of freedom.
+        /// The added matrix, over the caller's degrees of freedom.
         direction: MatrixView<'a>,
     },
-    /// A factor on the whole mass, damping or stiffness matrix with its couplings, 1 at present. The factor of the
-    /// damping acts on Rayleigh and modal damping as well.
+    /// A factor, with present value 1, on the whole mass, damping or stiffness matrix with its couplings. The factor
+    /// of the damping acts on Rayleigh and modal damping as well.
     Factor {
-        /// Mass, damping or stiffness.
+        /// Matrix that is changed: mass, damping or stiffness.
         which: MatrixKind,
     },
     /// The fixed speed of rotation Ω.
@@ -40,14 +40,14 @@ pub enum Parameter<'a> {
 /// Reason why a derivative is NaN.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason {
-    /// The derivative exists.
+    /// No reason: the derivative exists.
     Exists,
     /// A contact is at the onset of slip: the derivatives on the two sides differ.
     OnsetOfSlip {
-        /// Number of the contact.
+        /// Index of the contact.
         contact: usize,
     },
-    /// The constant is zero, and the force depends on it only above.
+    /// The constant is zero, and the force depends on it for positive values only.
     ZeroConstant,
     /// The point is a fold, where the result changes infinitely fast.
     Fold,

@@ -16,8 +16,9 @@ const PEAK_SHIFT_STEP: f64 = 5e-4;
 /// Kind: tuned; measured on: not recorded.
 const PROBE: f64 = 1e-7;
 
-/// dω*/dp of a peak at (u, ω), whose amplitude is `amplitude`, for `count` parameters whose derivatives of the amplitude
-/// `sensitivities` computes from an adjoint. All NaN where the branch cannot be linearised there.
+/// Derivatives dω*/dp of a peak at (u, ω), whose amplitude is `amplitude`, by `count` parameters; `sensitivities`
+/// computes the derivatives of the amplitude by these from an adjoint. All are NaN where the branch cannot be
+/// linearised at the peak.
 ///
 /// # Errors
 /// Those of [`ForcedPoint::adjoint`] and of `sensitivities`.

@@ -16,7 +16,7 @@ use crate::model::matrices::wave::Wave;
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
 use num_complex::Complex64;
 
-/// ∂Z_h by a matrix: its factor in the dynamic stiffness of the i-th carried harmonic.
+/// Derivative of Z_h by a matrix: the factor of this matrix in the dynamic stiffness of the i-th carried harmonic.
 fn factor(model: &Model, condensed: &Condensed, adjoint: &Adjoint, i: usize, which: MatrixKind) -> Complex64 {
     let block = &condensed.blocks()[i];
     let h = block.number as f64;
@@ -109,14 +109,14 @@ pub(super) fn with_direction(
     })
 }
 
-/// Matrices of waves that a factor multiplies, made once for all results and points of one model.
+/// Matrices of the waves that a factor multiplies, made once for all results and points of one model.
 #[derive(Debug, Default)]
 pub(crate) struct WaveMatrices {
     known: Vec<(MatrixKind, usize, Vec<Csc>)>,
 }
 
 impl WaveMatrices {
-    /// The matrix of a harmonic, and those that are no part of it though the wave's matrix has them.
+    /// The matrix of a harmonic; and those which the wave's matrix contains although they are no part of it.
     fn of(&mut self, model: &Model, which: MatrixKind, number: usize) -> Result<&[Csc]> {
         let position = self.known.iter().position(|(a, b, _)| (*a, *b) == (which, number));
         let position = if let Some(position) = position {
@@ -140,7 +140,7 @@ impl WaveMatrices {
     }
 }
 
-/// The product with the whole matrix, which a factor multiplies.
+/// The product with a whole matrix, as it is needed for a factor on it.
 pub(super) fn with_whole(
     model: &Model,
     condensed: &Condensed,

@@ -12,9 +12,9 @@ use crate::sensitivity::parameter::{Parameter, Reason};
 use crate::sensitivity::structure_products::{WaveMatrices, with_direction, with_speed, with_whole};
 use num_complex::Complex64;
 
-/// Derivatives of one result; products with a contact are computed once for all its constants.
+/// Derivatives of one result. Products with a contact are computed once for all its constants.
 pub(crate) struct TotalDerivative<'a> {
-    /// The model of the caller, and the same at the frequency of the solution.
+    /// The model of the caller; and this model at the frequency of the solution.
     model: &'a Model,
     at_frequency: &'a Model,
     condensed: &'a Condensed,
@@ -26,6 +26,8 @@ pub(crate) struct TotalDerivative<'a> {
 }
 
 impl<'a> TotalDerivative<'a> {
+    /// Begins the derivatives of a result; the products of contacts follow when they are needed.
+    ///
     /// # Errors
     /// `OutOfMemory`.
     pub fn new(
@@ -46,12 +48,12 @@ impl<'a> TotalDerivative<'a> {
         })
     }
 
-    /// The same with matrices that other results of the same model have made.
+    /// Uses matrices that were made for other results of the model.
     pub fn with_matrices(self, matrices: WaveMatrices) -> Self {
         Self { matrices, ..self }
     }
 
-    /// The matrices, for further results of the model.
+    /// Hands out the matrices, for further results of the model.
     pub fn into_matrices(self) -> WaveMatrices {
         self.matrices
     }
@@ -103,7 +105,7 @@ impl<'a> TotalDerivative<'a> {
         Ok((value, Reason::Exists))
     }
 
-    /// The derivative by a factor on all forces that act in the result.
+    /// Derivative by a factor on all forces, for results on which forces act.
     fn by_force(&self) -> Result<f64> {
         let condensed = self.condensed;
         let mut force = try_vec(condensed.degrees().independent(), Complex64::ZERO, CONTEXT)?;

@@ -5,6 +5,7 @@ use crate::continuation::Point;
 use crate::error::{Result, fail, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::harmonics::{Corrected, Estimate};
+use crate::options::Range;
 use crate::problem::{InitialGuess, Problem, Residual};
 use crate::results::{Branch, ParameterData, Special, SpecialKind};
 use num_complex::Complex64;
@@ -18,24 +19,24 @@ const PARAMETER_STEP: f64 = 1e-5;
 /// A result over a parameter. Motions come first among its unknowns, in one unit of length for all harmonics and all values
 /// of the parameter.
 pub(crate) trait Tracked: Problem {
-    /// The same as a problem.
+    /// This result as the problem whose equations are solved.
     fn problem(&mut self) -> &mut dyn Problem;
 
     /// Number of unknowns that are motions.
     fn motions(&self) -> usize;
 
-    /// Changes the harmonics to those of a resolution, of which `highest` is the highest requested.
+    /// Changes the harmonics to those of a resolution; `highest` is the highest requested one.
     fn select(&mut self, from: &HarmonicSet, to: &Resolution, highest: usize) -> Result<()>;
 
     /// Estimates the error of a solved point, relative to the result; `None` where no estimate at a fixed frequency or
     /// amplitude exists.
     fn estimate(&mut self, point: &Point) -> Result<Option<(f64, Estimate)>>;
 
-    /// Replaces the unknowns of a point by those of a corrected solution.
+    /// Replaces the unknowns of a point by those of a corrected solution with more harmonics.
     fn take_corrected(&self, corrected: &Corrected, set: &HarmonicSet, v: &mut [f64]);
 
-    /// Stores a point with its estimated error in a branch: on its curve, or where `kind` is given beside it. Returns it with
-    /// the relative change of its contact forces with the number of samples.
+    /// Stores a point with its estimated error in a branch: on its curve, or beside it if `kind` is given. Returns
+    /// the point, and the relative change of its contact forces with the number of samples.
     fn store(
         &mut self,
         point: &Point,
@@ -48,12 +49,12 @@ pub(crate) trait Tracked: Problem {
     /// Observes the reciprocal of the result, whose maxima are the minima of the result.
     fn set_reciprocal(&mut self, is_reciprocal: bool);
 
-    /// Whether the point solved last is still one of what is followed: a peak may become a minimum.
+    /// Whether the point solved last still is what is followed: a peak may have become a minimum.
     fn exists(&mut self, point: &Point) -> Result<bool>;
 }
 
-/// Writes the derivatives of equations by the parameter, by differences around p; at the end of what the parameter may be
-/// to one side.
+/// Writes the derivatives of equations by the parameter, by differences about p; one-sided ones at a limit of the
+/// parameter.
 ///
 /// # Errors
 /// Those of the equations at p.
@@ -80,7 +81,7 @@ pub(crate) fn by_differences(
     Ok(())
 }
 
-/// Unknowns over a parameter: their values at the start, and the Jacobian of the equations evaluated last.
+/// Unknowns over a parameter: their values at the start; and the Jacobian of the equations evaluated last.
 pub(crate) struct Unknowns {
     pub start: Vec<f64>,
     pub matrix: Vec<f64>,
@@ -91,38 +92,38 @@ pub(crate) struct Unknowns {
 }
 
 impl Unknowns {
-    /// Those that begin with `start`, over a range of the parameter.
+    /// Unknowns that begin with `start`, over a range of the parameter.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(start: Vec<f64>, range: (f64, f64)) -> Result<Self> {
+    pub fn new(start: Vec<f64>, range: Range) -> Result<Self> {
         Ok(Self {
             matrix: square(start.len())?,
             start,
-            step: PARAMETER_STEP * (range.1 - range.0).abs(),
+            step: PARAMETER_STEP * range.width(),
             is_reciprocal: false,
         })
     }
 
-    /// Changes their number; the values at the start are 0 then.
+    /// Changes the number of unknowns; the values at the start then become 0.
     pub fn resize(&mut self, n: usize) -> Result<()> {
         self.start = try_vec(n, 0.0, CONTEXT)?;
         self.matrix = square(n)?;
         Ok(())
     }
 
-    /// Their number.
+    /// Number of unknowns, the parameter not included.
     pub fn len(&self) -> usize {
         self.start.len()
     }
 
-    /// Copies the Jacobian, in which all unknowns take part.
+    /// Copies the Jacobian, and marks all of its columns as active.
     pub fn fill(&self, matrix: &mut [f64], active: &mut [bool]) {
         active.fill(true);
         matrix.copy_from_slice(&self.matrix);
     }
 
-    /// A result and its change, or those of its reciprocal.
+    /// Value of a result and its change; or of its reciprocal, if that is observed.
     pub fn observe(&self, value: f64, change: f64) -> (Complex64, Complex64) {
         if self.is_reciprocal {
             return ((1.0 / value).into(), (-change / (value * value)).into());
@@ -130,7 +131,7 @@ impl Unknowns {
         (value.into(), change.into())
     }
 
-    /// Writes the values at the start; `false` where another guess is asked for.
+    /// Writes the values at the start; `false` where another kind of guess is requested.
     pub fn initial_guess(&self, kind: InitialGuess, u: &mut [f64]) -> bool {
         let is_given = kind == InitialGuess::Given;
         if is_given {
@@ -140,7 +141,7 @@ impl Unknowns {
     }
 }
 
-/// Memory of a square matrix.
+/// Memory for a square matrix of order n.
 fn square(n: usize) -> Result<Vec<f64>> {
     match n.checked_mul(n) {
         Some(size) => try_vec(size, 0.0, CONTEXT),

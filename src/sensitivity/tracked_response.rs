@@ -22,6 +22,7 @@ use crate::linalg::factors::lu::Lu;
 use crate::linalg::newton::linear_system::Jacobian;
 use crate::linalg::{dot, norm};
 use crate::model::Model;
+use crate::options::Range;
 use crate::options::{Response, SolverOptions};
 use crate::problem::gauges::Gauges;
 use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
@@ -49,46 +50,51 @@ const BRANCH_STEP: f64 = 1e-4;
 /// Kind: cap.
 const TRACKED_RESPONSE_ITERATIONS: usize = 200;
 
-/// Point of a response over the frequency that is followed.
+/// Point of a forced response that is followed over a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ResponsePoint {
-    /// That at a fixed frequency.
+    /// The point at a fixed frequency.
     Fixed,
     /// A maximum of the amplitude.
     Peak,
-    /// The same, and the minimum that meets it.
+    /// A maximum of the amplitude, and the minimum that meets it.
     Extremum,
     /// A turning point of the frequency.
     Fold,
 }
 
-/// The response as a function of a parameter.
+/// The followed point of a forced response over a parameter, as a problem.
 pub(crate) struct TrackedResponse<'a> {
     model: &'a Model,
     parameter: Parameter<'a>,
     solver: SolverOptions,
     response_dof: usize,
-    /// The response that is followed instead of its amplitude.
+    /// The response that is followed in place of the amplitude; `None`: the amplitude.
     response: Option<Response<'a>>,
-    /// Frequency at a fixed one, or that of the first peak or fold.
+    /// The fixed frequency, or the frequency of the first peak or fold.
     omega: f64,
     kind: ResponsePoint,
-    /// Unit of lengths of the unknowns.
+    /// Unit of length of the motions among the unknowns.
     length: f64,
     unknowns: Unknowns,
     interrupt: &'a Interrupt<'a>,
     /// Borders of the condition of a fold or an extremum, from the first evaluation on.
     borders: Option<Borders>,
+    last: LastResponse,
+}
+
+/// Result of the point evaluated last.
+pub(crate) struct LastResponse {
     /// Amplitude at the point evaluated last, its total derivative by the parameter, and its change with all unknowns and
     /// the parameter along solutions.
     amplitude: f64,
     d_amplitude: f64,
     gradient: Vec<f64>,
-    /// d²A/dω² of a peak.
+    /// Second derivative d²A/dω² of a peak.
     curvature: f64,
 }
 
-/// A model at a value of the parameter, condensed.
+/// The model at a value of the parameter, condensed.
 struct At {
     model: Model,
     condensed: Condensed,
@@ -103,7 +109,7 @@ impl<'a> TrackedResponse<'a> {
     pub fn new(
         (model, parameter): (&'a Model, Parameter<'a>),
         (solver, response_dof, response): (&SolverOptions, usize, Option<Response<'a>>),
-        range: (f64, f64),
+        range: Range,
         (motion, length, omega): (&[f64], f64, f64),
         kind: ResponsePoint,
         interrupt: &'a Interrupt<'a>,
@@ -125,10 +131,12 @@ impl<'a> TrackedResponse<'a> {
             unknowns: Unknowns::new(start, range)?,
             interrupt,
             borders: None,
-            amplitude: 0.0,
-            d_amplitude: 0.0,
-            gradient: try_vec(n + 1, 0.0, CONTEXT)?,
-            curvature: f64::NAN,
+            last: LastResponse {
+                amplitude: 0.0,
+                d_amplitude: 0.0,
+                gradient: try_vec(n + 1, 0.0, CONTEXT)?,
+                curvature: f64::NAN,
+            },
         })
     }
 
@@ -158,7 +166,7 @@ impl<'a> TrackedResponse<'a> {
         Ok(At { model, condensed })
     }
 
-    /// The equations on a condensed model, with what is followed.
+    /// The equations on a condensed model, with the followed response.
     fn point<'c>(&self, condensed: &'c Condensed, omega: f64) -> Result<ForcedPoint<'c>>
     where
         'a: 'c,
@@ -171,7 +179,7 @@ impl<'a> TrackedResponse<'a> {
         }
     }
 
-    /// The response that is followed at a solution, as an estimate watches it, in the caller's unit.
+    /// Values of the followed response at a solution, as an estimate watches them, in the caller's unit.
     fn watched(&self, condensed: &Condensed, own: &[f64], omega: f64) -> Result<Vec<Complex64>> {
         let mut seen = Vec::new();
         let mut values = Vec::new();
@@ -188,7 +196,7 @@ impl<'a> TrackedResponse<'a> {
         Ok(values)
     }
 
-    /// Motions in the unit of lengths of a condensed model.
+    /// Motions in the unit of length of a condensed model.
     fn own_motion(&self, u: &[f64], condensed: &Condensed) -> Result<Vec<f64>> {
         let mut own = try_copy(&u[..self.motions()], CONTEXT)?;
         for y in &mut own {
@@ -221,7 +229,8 @@ impl<'a> TrackedResponse<'a> {
         Ok(if m == 0 { 1.0 } else { scale / unit })
     }
 
-    /// The equations at a fixed frequency or in a peak, and the scale of their residual, in the unit of the condensed model.
+    /// Evaluates the equations at a fixed frequency or in a peak; returns the scale of their residual, in the unit of
+    /// the condensed model.
     fn peak_equations(
         &mut self,
         point: &mut ForcedPoint<'_>,
@@ -244,21 +253,21 @@ impl<'a> TrackedResponse<'a> {
             return Ok(scale);
         }
         self.fill_motions(point.jacobian());
-        self.gradient.fill(0.0);
+        self.last.gradient.fill(0.0);
         if self.is_free() {
             let by_omega = point.residual_by_omega(omega)?;
             let (row, curvature) = peak_row(point, own, omega, &adjoint)?;
-            self.curvature = curvature;
+            self.last.curvature = curvature;
             self.fill_frequency((&by_omega, &row), omega, unit, by_gauge);
-            self.gradient[m] = adjoint.by_omega * TRACKED_RESPONSE_OMEGA_UNIT * omega;
+            self.last.gradient[m] = adjoint.by_omega * TRACKED_RESPONSE_OMEGA_UNIT * omega;
         }
         let slope = self.by_parameter((model, condensed), p, &adjoint)?;
-        self.gradient[values.len()] = slope;
-        (self.amplitude, self.d_amplitude) = (adjoint.amplitude, slope);
+        self.last.gradient[values.len()] = slope;
+        (self.last.amplitude, self.last.d_amplitude) = (adjoint.amplitude, slope);
         Ok(scale)
     }
 
-    /// The same in a fold.
+    /// Evaluates the equations in a fold; returns the scale of their residual.
     fn fold_equations(
         &mut self,
         point: &mut ForcedPoint<'_>,
@@ -292,19 +301,19 @@ impl<'a> TrackedResponse<'a> {
             self.by_parameter(models, p, adjoint)
         })?;
         self.fill_frequency((&by_omega, &g.by_unknowns), omega, unit, 1.0);
-        self.amplitude = length * amplitude.norm();
+        self.last.amplitude = length * amplitude.norm();
         // The change of the amplitude with all unknowns: in a fold its adjoint at a fixed frequency does not exist.
-        for (to, from) in self.gradient.iter_mut().zip(&by_motion) {
+        for (to, from) in self.last.gradient.iter_mut().zip(&by_motion) {
             *to = self.length * from;
         }
-        self.gradient[m] = partial.by_omega * TRACKED_RESPONSE_OMEGA_UNIT * omega;
-        self.gradient[n] = self.by_parameter(models, p, &partial)?;
+        self.last.gradient[m] = partial.by_omega * TRACKED_RESPONSE_OMEGA_UNIT * omega;
+        self.last.gradient[n] = self.by_parameter(models, p, &partial)?;
         // The adjoint of motions, frequency and condition together.
         let mut system = Lu::new(n, 1)?;
         system.matrix().copy_from_slice(&self.unknowns.matrix);
-        self.d_amplitude = f64::NAN;
+        self.last.d_amplitude = f64::NAN;
         if system.factor(self.interrupt).is_ok() {
-            let mut lambda = try_copy(&self.gradient[..n], CONTEXT)?;
+            let mut lambda = try_copy(&self.last.gradient[..n], CONTEXT)?;
             system.solve_transposed(&mut lambda);
             // R is in the unit of the unknowns, and the result of an adjoint motion in that of the condensed model.
             let weight = lambda.pop().unwrap_or(f64::NAN);
@@ -313,12 +322,12 @@ impl<'a> TrackedResponse<'a> {
             }
             point.amplitude(own, omega)?;
             let adjoint = point.of_lambda((own, omega), amplitude, &lambda)?;
-            self.d_amplitude = self.by_parameter(models, p, &adjoint)? - weight * g.by_parameter;
+            self.last.d_amplitude = self.by_parameter(models, p, &adjoint)? - weight * g.by_parameter;
         }
         Ok(scale)
     }
 
-    /// The same in a peak or the minimum that meets it.
+    /// Evaluates the equations in a peak or in the minimum that meets it; returns the scale of their residual.
     fn extremum_equations(
         &mut self,
         point: &mut ForcedPoint<'_>,
@@ -343,14 +352,14 @@ impl<'a> TrackedResponse<'a> {
         self.fill_motions(point.jacobian());
         let row = extremum_gradient(point, (own, omega, length), &at, TRACKED_RESPONSE_OMEGA_UNIT * omega)?;
         self.fill_frequency((&by_omega, &row), omega, unit, 1.0);
-        self.amplitude = length * amplitude.norm();
-        for (to, from) in self.gradient.iter_mut().zip(&by_motion) {
+        self.last.amplitude = length * amplitude.norm();
+        for (to, from) in self.last.gradient.iter_mut().zip(&by_motion) {
             *to = self.length * from;
         }
-        self.gradient[m] = partial.by_omega * TRACKED_RESPONSE_OMEGA_UNIT * omega;
-        self.gradient[n] = self.by_parameter((model, condensed), p, &partial)?;
+        self.last.gradient[m] = partial.by_omega * TRACKED_RESPONSE_OMEGA_UNIT * omega;
+        self.last.gradient[n] = self.by_parameter((model, condensed), p, &partial)?;
         // The amplitude does not change with the frequency there, so that its derivative is that at a fixed one.
-        self.d_amplitude = match point.adjoint(own, omega)? {
+        self.last.d_amplitude = match point.adjoint(own, omega)? {
             Some(adjoint) => self.by_parameter((model, condensed), p, &adjoint)?,
             None => f64::NAN,
         };
@@ -374,7 +383,7 @@ impl<'a> TrackedResponse<'a> {
         at
     }
 
-    /// Lets the borders follow the null vectors at a solution.
+    /// Replaces the borders by the null vectors at a solution.
     fn follow_borders(&mut self, point: &mut ForcedPoint<'_>, own: &[f64], omega: f64) -> Result<()> {
         if self.borders.is_none() {
             return Ok(());
@@ -398,7 +407,7 @@ impl<'a> TrackedResponse<'a> {
         Ok(())
     }
 
-    /// Writes Newton's matrix of the motions.
+    /// Writes Newton's matrix of the motions as a part of the Jacobian.
     fn fill_motions(&mut self, jacobian: &[f64]) {
         let (m, n) = (self.motions(), self.unknowns.len());
         self.unknowns.matrix.fill(0.0);
@@ -412,7 +421,7 @@ impl<'a> TrackedResponse<'a> {
         }
     }
 
-    /// Writes the column of the frequency, and the row of its condition times a factor.
+    /// Writes the column of the frequency, and the row of its condition, the latter times a factor.
     fn fill_frequency(&mut self, (column, row): (&[f64], &[f64]), omega: f64, unit: f64, factor: f64) {
         let (m, n) = (self.motions(), self.unknowns.len());
         for (x, r) in self.unknowns.matrix[m * n..m * n + m].iter_mut().zip(column) {
@@ -425,7 +434,7 @@ impl<'a> TrackedResponse<'a> {
         self.unknowns.matrix[m * n + m] = row[m] * TRACKED_RESPONSE_OMEGA_UNIT * omega * factor;
     }
 
-    /// The derivative of the result of an adjoint motion by the parameter.
+    /// Derivative by the parameter of the result to which an adjoint motion belongs.
     fn by_parameter(&self, (model, condensed): (&Model, &Condensed), p: f64, adjoint: &Adjoint) -> Result<f64> {
         let at_frequency = model.at_frequency(adjoint.omega)?;
         let solution = (condensed, self.solver.samples);
@@ -456,7 +465,7 @@ impl Tracked for TrackedResponse<'_> {
             }
         }
         self.unknowns.resize(n)?;
-        self.gradient = try_vec(n + 1, 0.0, CONTEXT)?;
+        self.last.gradient = try_vec(n + 1, 0.0, CONTEXT)?;
         self.solver.harmonics = highest;
         self.solver.samples = self.solver.samples.max(to.samples);
         Ok(())
@@ -525,7 +534,7 @@ impl Tracked for TrackedResponse<'_> {
             resolution: &resolution,
             omega,
             motion: &motion,
-            amplitude: Complex64::from(self.amplitude / condensed.length()),
+            amplitude: Complex64::from(self.last.amplitude / condensed.length()),
             response: &response,
             residual: point.residual,
             iterations: point.iterations,
@@ -535,11 +544,11 @@ impl Tracked for TrackedResponse<'_> {
             seen: &[],
         };
         branch.push_followed(kind, &record)?;
-        data.push(p, (self.d_amplitude, f64::NAN))?;
+        data.push(p, (self.last.d_amplitude, f64::NAN))?;
         let special = Special {
             point: branch.stored() - 1,
             omega,
-            amplitude: self.amplitude,
+            amplitude: self.last.amplitude,
         };
         Ok((special, sampling_error))
     }
@@ -554,7 +563,7 @@ impl Tracked for TrackedResponse<'_> {
         }
         let mut values = try_vec(point.unknowns().len(), 0.0, CONTEXT)?;
         self.equations(point.unknowns(), point.parameter(), true, &mut values)?;
-        Ok(self.curvature <= 0.0)
+        Ok(self.last.curvature <= 0.0)
     }
 }
 
@@ -608,11 +617,11 @@ impl Problem for TrackedResponse<'_> {
         Ok(())
     }
 
-    /// The amplitude; its derivative is that along the curve of solutions.
+    /// Observes the amplitude; its derivative is taken along the curve of solutions.
     fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
-        let mut change = dot(&self.gradient[..u.len()], &direction[..u.len()]);
-        change += self.gradient[u.len()] * direction[u.len()];
-        self.unknowns.observe(self.amplitude, change)
+        let mut change = dot(&self.last.gradient[..u.len()], &direction[..u.len()]);
+        change += self.last.gradient[u.len()] * direction[u.len()];
+        self.unknowns.observe(self.last.amplitude, change)
     }
 
     fn initial_guess(&mut self, kind: InitialGuess, _p: f64, u: &mut [f64]) -> Result<bool> {

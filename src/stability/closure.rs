@@ -9,12 +9,12 @@ use crate::model::matrices::structure::Structure;
 use crate::options::Waves;
 use num_complex::Complex64;
 
-/// A block of perturbations.
+/// A block of perturbations that the motion does not couple with others.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Closure {
     /// Number m of sectors after which the perturbation repeats but for the factor c.
     pub sectors: usize,
-    /// Number j of the block.
+    /// Index j of the block.
     pub index: usize,
     /// Whether a conjugate block exists, whose multipliers are conjugate.
     pub has_conjugate: bool,
@@ -23,14 +23,14 @@ pub(crate) struct Closure {
 }
 
 impl Closure {
-    /// c^{turns}, the factor after `turns` times m sectors.
+    /// Factor c^{turns} of a perturbation after `turns` times m sectors.
     pub fn factor(&self, structure: &Structure, turns: usize) -> Complex64 {
         structure.wave_phase(self.index as i64, (turns * self.sectors) as i64)
     }
 }
 
-/// The blocks: that of the wave, or one of each pair of conjugate ones. `odd`: the sectors half a wave apart move
-/// opposite to each other.
+/// Lists the blocks: the one of the wave itself, or one of each pair of conjugate blocks. `odd`: sectors half a wave
+/// apart move opposite to each other.
 pub(crate) fn closures(structure: &Structure, waves: Waves, odd: bool) -> Result<Vec<Closure>> {
     let repeating = structure.repeating_sectors();
     let sectors = if odd { repeating / 2 } else { repeating };

@@ -6,10 +6,10 @@
 //! the variational equations as a constant. The rate of an autonomous motion is a perturbation that returns as itself.
 
 use crate::error::{Error, Result, Status};
+use crate::linalg::libraries::{ColPivQR, ComplexField, DMatrix, DVector, SVD};
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::stability::perturbations::Perturbations;
 use crate::stability::ring::Row;
-use nalgebra::{ColPivQR, ComplexField, DMatrix, DVector, SVD};
 use num_complex::Complex64;
 
 /// Singular values below this share of the largest are rounding: the displacement strains nothing.
@@ -26,7 +26,7 @@ const NO_DOUBT_OF_RANK: f64 = 1e-8;
 const KNOWN_DIRECTIONS_MOST_ITERATIONS: usize = 100_000;
 
 impl Perturbations<'_> {
-    /// The sliders of the ring that never move; `moved` tells it of the elements of the structure in time.
+    /// Sliders of the ring that never move; `moved` tells whether that of an element of the structure in time moves.
     pub(super) fn stuck_sliders(&self, moved: &dyn Fn(usize) -> bool) -> Vec<usize> {
         let sliders = self.ring.elements.iter().filter(|e| !moved(e.source));
         sliders.filter_map(|e| e.slider).collect()
@@ -79,7 +79,7 @@ impl Perturbations<'_> {
         Ok(found)
     }
 
-    /// The rate (x′, v′, w′) of the motion, of which `rates` are those of all sectors in time.
+    /// Rate (x′, v′, w′) of the motion in this block; `rates` holds those of all sectors in time.
     pub(super) fn rate(&self, (v, a, w): (&[f64], &[f64], &[f64])) -> DVector<Complex64> {
         let n = self.ring.order;
         let mut rate = DVector::zeros(self.ring.states());
@@ -96,7 +96,7 @@ impl Perturbations<'_> {
     }
 }
 
-/// Whether the columns are independent beyond doubt, so that singular values, which take longer, need not tell it.
+/// Whether the columns are clearly independent, so that singular values, which take longer, are not needed.
 fn is_regular(strain: &DMatrix<Complex64>) -> bool {
     fn least<T: ComplexField<RealField = f64>>(a: DMatrix<T>) -> bool {
         let r = ColPivQR::new(a).unpack_r();

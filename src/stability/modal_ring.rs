@@ -15,64 +15,65 @@
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::fallible_matrix::{add_product, adjoint, filled, zeros};
+use crate::linalg::libraries::DMatrix;
 use crate::model::matrices::structure::Structure;
 use crate::model::natural_modes::contact_modes::ContactModes;
 use crate::stability::closure::Closure;
 use crate::time_integration::Number;
-use nalgebra::DMatrix;
 use num_complex::Complex64;
 use std::f64::consts::SQRT_2;
 
 const CONTEXT: &str = "the sectors on modes";
 
-/// Contacts of friction under constant loads, alike in every sector.
+/// Contacts of friction under constant loads, equal in every sector.
 pub(crate) struct Sliders {
     /// Stiffness of each contact.
     pub stiffness: Vec<f64>,
-    /// Limit of its force over its stiffness.
+    /// Friction limit of each contact over its stiffness.
     pub play: Vec<f64>,
-    /// Place of its slider before any motion.
+    /// Place of each slider before any motion.
     pub start: Vec<f64>,
 }
 
-/// A wave among the coordinates of a block.
+/// Position of a wave among the coordinates of a block.
 #[derive(Clone, Copy)]
 pub(crate) struct RingWave {
     /// Nodal diameter 0 ..= N/2.
     pub diameter: usize,
-    /// Its first coordinate.
+    /// Index of the first coordinate of the wave.
     pub place: usize,
-    /// Whether real and imaginary part are coordinates, times √2, real parts first.
+    /// Whether real and imaginary parts of the modal amplitudes are separate coordinates, times √2, real parts first.
     pub is_pair: bool,
 }
 
-/// The equations of a block. Contacts are numbered contact by contact, sectors within.
+/// The equations of a block on modes. Contacts are numbered contact by contact, sectors within.
 pub(crate) struct ModalRing<T: Number> {
     pub closure: Closure,
-    /// Contacts of a sector.
+    /// Number of contacts of a sector.
     pub contacts: usize,
-    /// The waves, each with `modes` modes.
+    /// The waves of the block, each with `modes` modes.
     pub waves: Vec<RingWave>,
     pub modes: usize,
-    /// Ω² by coordinate.
+    /// Squared natural frequency Ω² of each coordinate.
     pub square: Vec<f64>,
-    /// C, and its diagonal where it has no other entries.
+    /// Modal damping matrix C; and its diagonal where it has no other entries.
     pub damping: DMatrix<T>,
     pub own_damping: Option<Vec<T>>,
-    /// R
+    /// Relative motions R of all contacts in the coordinates.
     pub rows: DMatrix<T>,
-    /// G
+    /// Flexibility G of the modes that are left out, contact by contact.
     pub residual: DMatrix<T>,
-    /// Coordinates in which every sector has the motion of the one that it follows.
+    /// Matrix that gives every sector the motion, in coordinates, of the sector that it follows.
     pub turn: DMatrix<T>,
-    /// kt
+    /// Stiffness kt of each contact.
     pub stiffness: Vec<f64>,
-    /// Sectors by which the wave has moved after a lapse.
+    /// Number of sectors by which the wave has moved after a lapse.
     follower: usize,
 }
 
 impl<T: Number> ModalRing<T> {
-    /// The block of a closure; `modes` by diameter 0 ..= N/2. In real numbers blocks are their own conjugates.
+    /// Makes the equations of the block of a closure; `modes` are given by diameter 0 ..= N/2. In real numbers blocks
+    /// are their own conjugates.
     ///
     /// # Errors
     /// `OutOfMemory`; `Internal` for a diameter that was not prepared; `StoppedByCaller`.
@@ -142,17 +143,17 @@ impl<T: Number> ModalRing<T> {
         Ok(ring)
     }
 
-    /// Number of coordinates.
+    /// Number of coordinates of the block.
     pub fn order(&self) -> usize {
         self.square.len()
     }
 
-    /// Number of contacts of all sectors.
+    /// Number of contacts over all sectors.
     pub fn all(&self) -> usize {
         self.stiffness.len()
     }
 
-    /// Adds 1/m (R K⁻¹ Rᴴ − Σ ψψᴴ/ω²) e^{−2πi(s − s′)δ/N}.
+    /// Adds the flexibility 1/m (R K⁻¹ Rᴴ − Σ ψψᴴ/ω²) e^{−2πi(s − s′)δ/N} of one wave's omitted modes.
     fn add_residual(
         &mut self,
         structure: &Structure,
@@ -183,7 +184,7 @@ impl<T: Number> ModalRing<T> {
         Ok(())
     }
 
-    /// Coordinates of one wave.
+    /// Adds the coordinates of one wave.
     fn add_wave(&mut self, structure: &Structure, own: &ContactModes, wave: (usize, bool, usize), place: usize) {
         let (diameter, backward, count) = wave;
         let m = self.closure.sectors;
@@ -205,7 +206,7 @@ impl<T: Number> ModalRing<T> {
         }
     }
 
-    /// Real and imaginary part, times √2, of the coordinates of a wave whose conjugate belongs to the block.
+    /// Adds real and imaginary part, times √2, of the coordinates of a wave whose conjugate belongs to the block.
     fn add_pair(&mut self, structure: &Structure, own: &ContactModes, (diameter, count): (usize, usize), place: usize) {
         let m = self.closure.sectors;
         let share = SQRT_2 / (m as f64).sqrt();
@@ -233,7 +234,7 @@ impl<T: Number> ModalRing<T> {
         }
     }
 
-    /// The contact whose motion contact `e` has a lapse later, and how often the ring is passed on the way to it.
+    /// The contact whose motion contact `e` has one lapse later, and how often the ring is passed on the way to it.
     pub fn shifted(&self, e: usize) -> (usize, usize) {
         let m = self.closure.sectors;
         let to = e % m + self.follower;
@@ -241,7 +242,7 @@ impl<T: Number> ModalRing<T> {
     }
 }
 
-/// R K⁻¹ Rᴴ − Σ ψψᴴ/ω² of one sector.
+/// Flexibility R K⁻¹ Rᴴ − Σ ψψᴴ/ω² of one sector's omitted modes.
 fn left_out(own: &ContactModes, count: usize, interrupt: &Interrupt<'_>) -> Result<DMatrix<Complex64>> {
     let contacts = own.rows.nrows();
     let scaled = filled(contacts, count, CONTEXT, |c, k| own.rows[(c, k)] / own.omega[k].powi(2))?;

@@ -9,11 +9,11 @@ use crate::error::{Result, check_memory, try_copy, try_push};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::eigenvalues;
 use crate::linalg::dense::general_eigen;
+use crate::linalg::libraries::{ColPivQR, ComplexField, DMatrix, DVector};
 use crate::model::matrices::structure::Structure;
 use crate::results::{Multiplier, MultiplierClass};
 use crate::stability::perturbations::Perturbations;
 use crate::time_integration::System;
-use nalgebra::{ColPivQR, ComplexField, DMatrix, DVector};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the Floquet multipliers";
@@ -39,11 +39,11 @@ const LAPSES_FOR_EACH_SLIDER: usize = 2;
 /// Kind: rounding.
 const INVARIANT: f64 = 1e-6;
 
-/// Facts about the motion from which multipliers are known.
+/// Facts about the motion from which some multipliers are known.
 pub(crate) struct Known<'a> {
-    /// Whether the slider of an element of the structure in time moves.
+    /// Function that tells whether the slider of an element of the structure in time moves.
     pub moved: &'a dyn Fn(usize) -> bool,
-    /// Rates (x′, v′, w′) of all sectors at the begin of an autonomous motion.
+    /// Rates (x′, v′, w′) of all sectors at the beginning of an autonomous motion; `None` for a driven one.
     pub rates: Option<(&'a [f64], &'a [f64], &'a [f64])>,
 }
 
@@ -89,8 +89,8 @@ pub(crate) fn multipliers_of(
         trivial = 1;
     }
     // The lapses of a period turn the wheel by `follower` sectors each, which passes the ring some whole times.
-    let lapses = system.sectors;
-    let passed = system.follower * lapses / block.closure().sectors;
+    let lapses = system.wave.sectors;
+    let passed = system.wave.follower * lapses / block.closure().sectors;
     let turn = block.closure().factor(structure, passed).conj();
     let counts = Counts {
         stuck: stuck.len(),
@@ -108,7 +108,7 @@ pub(crate) fn multipliers_of(
     )
 }
 
-/// Numbers of multipliers that are known beforehand, and of sliders that move.
+/// Number of multipliers that are known beforehand, by reason; and number of sliders that move.
 pub(crate) struct Counts {
     pub stuck: usize,
     pub rigid: usize,
@@ -116,8 +116,8 @@ pub(crate) struct Counts {
     pub moving: usize,
 }
 
-/// The multipliers of a period by their reasons, from the map of a lapse without known directions. A period has `lapses`
-/// of them, and the power of the map is to be multiplied by `turn`.
+/// The multipliers of a period with their reasons, from the map of a lapse without the known directions. A period has
+/// `lapses` lapses, and the power of the map must be multiplied by `turn`.
 pub(crate) fn classified(
     map: DMatrix<Complex64>,
     counts: &Counts,
@@ -164,7 +164,7 @@ pub(crate) fn classified(
     Ok(found)
 }
 
-/// Whether the map leaves the span of the directions, which are orthogonal up to their sliders, in itself.
+/// Whether the map leaves the span of the directions invariant; these are orthogonal up to their sliders.
 fn is_invariant(map: &DMatrix<Complex64>, directions: &[DVector<Complex64>]) -> bool {
     if directions.is_empty() {
         return true;
@@ -175,7 +175,7 @@ fn is_invariant(map: &DMatrix<Complex64>, directions: &[DVector<Complex64>]) -> 
     rest.norm() <= INVARIANT * image.norm()
 }
 
-/// The map without an invariant subspace, by reflections that carry it to the first coordinates.
+/// The map without an invariant subspace, by reflections that turn this subspace to the first coordinates.
 fn without(mut map: DMatrix<Complex64>, mut directions: Vec<DVector<Complex64>>) -> DMatrix<Complex64> {
     let count = directions.len();
     for k in 0..count {
@@ -206,8 +206,8 @@ fn without(mut map: DMatrix<Complex64>, mut directions: Vec<DVector<Complex64>>)
         .into_owned()
 }
 
-/// Removes the columns that are zero with their rows, each with one zero multiplier, and returns their number: those of
-/// sliders that slip at the begin of the lapse.
+/// Removes zero columns with their rows, each of which has a zero multiplier, and returns their number: sliders that
+/// slip at the beginning of the lapse.
 fn without_zero_columns<T: ComplexField<RealField = f64>>(map: &mut DMatrix<T>) -> usize {
     let mut zeros = 0;
     while let Some(j) = (0..map.ncols()).find(|&j| map.column(j).iter().all(T::is_zero)) {
@@ -219,8 +219,9 @@ fn without_zero_columns<T: ComplexField<RealField = f64>>(map: &mut DMatrix<T>) 
     zeros
 }
 
-/// The map on its lasting range, and the number of its zero multipliers, but for those that need no care: of k sliders that forget
-/// within a lapse an eigensolver finds no larger numbers than the k-th root of round-off, which vanish as powers of many lapses.
+/// The map on its lasting range, and the number of its zero multipliers; zeros that need no care remain. For k
+/// sliders that forget within a lapse, an eigensolver finds numbers no larger than the k-th root of round-off, which
+/// vanish as powers of many lapses.
 fn without_zeros<T: ComplexField<RealField = f64>>(
     mut map: DMatrix<T>,
     (moving, lapses): (usize, usize),

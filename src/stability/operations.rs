@@ -20,22 +20,22 @@ const OPERATIONS_STEP: f64 = 2.0;
 /// Kind: tuned; measured on: not recorded.
 const TWICE: f64 = 2.0;
 
-/// A structure as the operations of its perturbations depend on it.
+/// Sizes of a structure that determine the operations of its perturbations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extent {
-    /// Degrees of freedom of a block of perturbations.
+    /// Number of degrees of freedom of a block of perturbations.
     pub order: f64,
     pub sliders: f64,
-    /// Entries of its matrices.
+    /// Number of entries of the matrices of a block.
     pub entries: f64,
     /// Largest natural frequency times the time over which perturbations are carried.
     pub fastest: f64,
-    /// Number of blocks.
+    /// Number of blocks of perturbations.
     pub blocks: f64,
 }
 
 impl Extent {
-    /// Operations of their multipliers.
+    /// Number of operations for the multipliers of all blocks.
     pub fn operations(&self) -> f64 {
         let states = 2.0 * self.order + self.sliders;
         let steps = 1.0 + self.fastest / OPERATIONS_STEP;
@@ -44,8 +44,8 @@ impl Extent {
     }
 }
 
-/// Bound of the largest natural angular frequency: the largest sum of a row of the stiffness over the mass on the
-/// diagonal.
+/// Upper bound of the largest natural angular frequency: the largest row sum of the stiffness over the diagonal of
+/// the mass.
 pub(crate) fn fastest_motion(stiffness: &Csc, mass: &Csc) -> f64 {
     let square = (0..stiffness.cols).fold(0.0_f64, |most, j| {
         let sum: f64 = stiffness.column(j).map(|(_, v)| v.norm()).sum();

@@ -26,11 +26,11 @@ enum Basis<'s> {
     Complex(PerturbationBasis<'s, Complex64>),
 }
 
-/// The blocks that are carried together.
+/// Blocks of perturbations that are carried together.
 pub(crate) struct Blocks<'s> {
-    /// The blocks.
+    /// Perturbations of each block.
     pub list: Vec<Perturbations<'s>>,
-    /// The first contact that touches an event: number of the element, and the event.
+    /// The first contact that touches an event: index of the element, and the kind of event.
     pub grazing: Option<(usize, Grazing)>,
 }
 
@@ -51,7 +51,7 @@ impl<'s> Perturbations<'s> {
 }
 
 impl Perturbations<'_> {
-    /// The block.
+    /// The block to which the perturbations belong.
     pub fn closure(&self) -> &Closure {
         &self.ring.closure
     }
@@ -62,7 +62,7 @@ impl Perturbations<'_> {
         (from, self.ring.closure.factor(structure, turns))
     }
 
-    /// State `i` at the end of the lapse by state `j` at the begin, before sectors are exchanged.
+    /// Derivative of state `i` at the end of the lapse by state `j` at the beginning, before sectors are exchanged.
     pub(super) fn carried(&self, i: usize, j: usize) -> Complex64 {
         let at = j * self.ring.states() + i;
         match &self.basis {
@@ -71,7 +71,7 @@ impl Perturbations<'_> {
         }
     }
 
-    /// The state that state `i` repeats a lapse later, and how often the ring is passed on the way to it.
+    /// The state that state `i` repeats one lapse later, and how often the ring is passed on the way to it.
     fn shifted(&self, system: &System<'_>, i: usize) -> (usize, usize) {
         let (n, m) = (self.ring.order, self.ring.closure.sectors);
         let (first, block, at) = match i {
@@ -82,11 +82,11 @@ impl Perturbations<'_> {
         // Sliders are numbered contact by contact, sectors within.
         let (sector, within) = (at / block % m, at % block);
         let group = at - sector * block - within;
-        let to = sector + system.follower;
+        let to = sector + system.wave.follower;
         (first + group + to % m * block + within, to / m)
     }
 
-    /// The identity, before a lapse.
+    /// Sets the perturbations to the identity, before a lapse.
     fn begin(&mut self) {
         match &mut self.basis {
             Basis::Real(basis) => basis.begin(),

@@ -19,30 +19,30 @@ const CONTEXT: &str = "the equations of perturbations";
 /// Kind: rounding.
 const RING_ROUNDING: f64 = 1e-14;
 
-/// Row of a relative motion: entries (degree of freedom of the ring, coefficient).
+/// Row of a relative motion over the ring: pairs (degree of freedom, coefficient).
 pub(super) type Row = [Option<(usize, Complex64)>; MOTION_TERMS];
 
-/// An element of the ring.
+/// A contact of the ring.
 pub(super) struct RingElement {
-    /// Number of the element in the structure in time.
+    /// Index of the element in the structure in time.
     pub source: usize,
     pub rows: Vec<Row>,
-    /// Number of its slider among those of the ring.
+    /// Index of the slider of this contact among the sliders of the ring; `None` without a slider.
     pub slider: Option<usize>,
-    /// Whether its law has no events.
+    /// Whether the law of the contact has no events.
     pub smooth: bool,
 }
 
-/// A block of perturbations.
+/// Matrices and contacts of a block of perturbations.
 pub(super) struct Ring {
     pub closure: Closure,
-    /// Degrees of freedom of all its sectors.
+    /// Number of degrees of freedom of all sectors of the ring.
     pub order: usize,
     pub mass: Csc,
     pub damping: Csc,
     pub stiffness: Csc,
     pub elements: Vec<RingElement>,
-    /// Number of sliders.
+    /// Number of sliders of the ring.
     pub sliders: usize,
 }
 
@@ -111,7 +111,7 @@ impl Ring {
             && rows.flatten().all(|(_, a)| a.im == 0.0)
     }
 
-    /// The equations of its perturbations, whose imaginary parts are left out in real numbers.
+    /// The equations of perturbations of the ring; in real numbers their imaginary parts are left out.
     pub fn equations<T: Number>(&self, interrupt: &Interrupt<'_>) -> Result<VariationalEquations<T>> {
         let mut elements = Vec::new();
         for e in &self.elements {
@@ -132,7 +132,7 @@ impl Ring {
     }
 }
 
-/// M, C or K of the ring.
+/// Matrix M, C or K of the ring.
 fn matrix(structure: &Structure, which: MatrixKind, closure: &Closure) -> Result<Csc> {
     let (ndof, sectors) = (structure.ndof(), closure.sectors);
     let count = structure.sectors() / sectors;

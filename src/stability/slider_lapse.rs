@@ -42,7 +42,7 @@ const SLIDER_LAPSE_BEGIN: f64 = 1e-14;
 const SLIDER_LAPSE_ROUNDING: f64 = 1e-12;
 
 impl SliderMotion<'_> {
-    /// Integrates a state over a lapse.
+    /// Integrates a state over a lapse, and returns the changes on its path.
     ///
     /// # Errors
     /// `NoConvergence` for contacts that change without end, or too many steps; `Unsupported` where nothing but slipping
@@ -81,13 +81,13 @@ impl SliderMotion<'_> {
             at_once = if passed > 1e-15 * self.lapse {
                 0
             } else {
-                at_once + lapse.changing.len()
+                at_once + lapse.events.changing.len()
             };
             if at_once > SLIDER_LAPSE_AT_ONCE * (1 + self.ring.all()) {
                 return fail!(NoConvergence, "contacts change without end at time {t} of the period");
             }
             lapse.switch(theta, state, &mut path)?;
-            t = if lapse.changing.is_empty() && theta >= 1.0 && lapse.length >= self.lapse - t {
+            t = if lapse.events.changing.is_empty() && theta >= 1.0 && lapse.length >= self.lapse - t {
                 self.lapse
             } else {
                 t + passed
@@ -111,7 +111,7 @@ impl<'m, 'a> Lapse<'m, 'a> {
             lapse.relative_at_begin(state)?;
             let mut more = false;
             for e in 0..all {
-                let (r, w) = (lapse.r[(e, 0)], state.w[e]);
+                let (r, w) = (lapse.powers.r[(e, 0)], state.w[e]);
                 let rounding = SLIDER_LAPSE_BEGIN * (r.abs() + w.abs() + motion.play[e]);
                 let stretch = r - w;
                 if lapse.sign[e] == 0.0 && stretch.abs() >= motion.play[e] - rounding {
@@ -127,7 +127,7 @@ impl<'m, 'a> Lapse<'m, 'a> {
         Ok(lapse)
     }
 
-    /// The equations of the contacts that slip now.
+    /// Sets up the equations of the contacts that slip at present.
     fn release(&mut self) -> Result<()> {
         let mut list = Vec::new();
         for (e, sign) in self.sign.iter().enumerate() {
@@ -139,23 +139,24 @@ impl<'m, 'a> Lapse<'m, 'a> {
         Ok(())
     }
 
-    /// The first θ at which a contact changes, 1 if none does; lists those that do.
+    /// The first share θ of the step at which a contact changes its state, 1 if none does; lists the contacts that
+    /// change.
     fn next_event(&mut self, state: &SliderState) -> Result<f64> {
-        self.falls.clear();
-        self.changing.clear();
+        self.events.falls.clear();
+        self.events.changing.clear();
         let mut margin = [0.0; DEGREE + 1];
         let margin = &mut margin[..=SLIDER_STEP_TERMS];
         for (e, &sign) in self.sign.iter().enumerate() {
             let mut first: Option<f64> = None;
             if sign == 0.0 {
-                let stretch = self.r[(e, 0)] - state.w[e];
+                let stretch = self.powers.r[(e, 0)] - state.w[e];
                 for side in [1.0, -1.0] {
                     for (k, m) in margin.iter_mut().enumerate().skip(1) {
-                        *m = -side * self.r[(e, k)];
+                        *m = -side * self.powers.r[(e, k)];
                     }
                     margin[0] = self.motion.play[e] - side * stretch;
                     let zeros = if margin[0] <= 0.5 * self.motion.play[e] {
-                        self.zeros[e]
+                        self.events.zeros[e]
                     } else {
                         0
                     };
@@ -165,7 +166,7 @@ impl<'m, 'a> Lapse<'m, 'a> {
                 }
             } else {
                 for (k, m) in margin.iter_mut().enumerate().take(SLIDER_STEP_TERMS) {
-                    *m = sign * (k + 1) as f64 * self.r[(e, k + 1)];
+                    *m = sign * (k + 1) as f64 * self.powers.r[(e, k + 1)];
                 }
                 margin[SLIDER_STEP_TERMS] = 0.0;
                 let size: f64 = margin.iter().map(|m| m.abs()).sum();
@@ -174,26 +175,30 @@ impl<'m, 'a> Lapse<'m, 'a> {
                 first = if turned { Some(0.0) } else { first_fall(margin, 0) };
             }
             if let Some(theta) = first {
-                try_push(&mut self.falls, (theta, e), CONTEXT)?;
+                try_push(&mut self.events.falls, (theta, e), CONTEXT)?;
             }
         }
-        let until = self.falls.iter().fold(f64::INFINITY, |m, (theta, _)| m.min(*theta));
-        for &(theta, e) in &self.falls {
+        let until = self
+            .events
+            .falls
+            .iter()
+            .fold(f64::INFINITY, |m, (theta, _)| m.min(*theta));
+        for &(theta, e) in &self.events.falls {
             if theta <= until + SLIDER_LAPSE_SIMULTANEOUS && theta <= 1.0 {
-                try_push(&mut self.changing, e, CONTEXT)?;
+                try_push(&mut self.events.changing, e, CONTEXT)?;
             }
         }
         // Where changes follow from changes, one at a time leads to their end.
         if until == 0.0 {
-            self.changing.truncate(1);
+            self.events.changing.truncate(1);
         }
         Ok(until.min(1.0))
     }
 
-    /// Changes contacts at θ of the last step.
+    /// Changes the states of contacts at θ of the last step.
     fn switch(&mut self, theta: f64, state: &mut SliderState, path: &mut Path) -> Result<()> {
-        for at in 0..self.changing.len() {
-            let e = self.changing[at];
+        for at in 0..self.events.changing.len() {
+            let e = self.events.changing[at];
             let slips = self.sign[e] == 0.0;
             let rate = self.rate(e, theta);
             let mut speed = 0.0;
@@ -209,9 +214,9 @@ impl<'m, 'a> Lapse<'m, 'a> {
             } else {
                 state.w[e] = self.place(e, theta);
                 // Its speed is zero, unless another contact has turned it around.
-                let size: f64 = self.r.row(e).iter().skip(1).map(|r| r.abs()).sum::<f64>() / self.length;
+                let size: f64 = self.powers.r.row(e).iter().skip(1).map(|r| r.abs()).sum::<f64>() / self.length;
                 let is_turned = rate.abs() > SLIDER_LAPSE_ROUNDING.sqrt() * size;
-                self.zeros[e] = if is_turned { 1 } else { 2 };
+                self.events.zeros[e] = if is_turned { 1 } else { 2 };
                 if is_turned && theta == 0.0 {
                     speed = rate;
                 }

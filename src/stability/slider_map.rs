@@ -12,11 +12,11 @@ use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::fallible_matrix::{add_product, adjoint, filled, product, zeros};
 use crate::linalg::factors::lu::Scalar;
+use crate::linalg::libraries::DMatrix;
 use crate::stability::modal_ring::ModalRing;
 use crate::stability::slider_motion::{Change, Path};
 use crate::stability::slipping::Slipping;
 use crate::time_integration::Number;
-use nalgebra::DMatrix;
 
 const CONTEXT: &str = "the perturbations on modes";
 
@@ -32,36 +32,37 @@ const SLIDER_MAP_CUT: f64 = 1e-17;
 /// Kind: cap.
 const SLIDER_MAP_MOST_TERMS: usize = 100;
 
-/// Perturbations by columns: those of coordinates, velocities, and the places of sliders at rest that move at some time.
+/// Perturbations in columns: of coordinates, of velocities, and of the places of those sticking sliders that move at
+/// some time.
 pub(crate) struct SliderMap<'r, T: Number> {
     ring: &'r ModalRing<T>,
     /// Contacts that move in some sector, ascending.
     pub moving: Vec<usize>,
-    /// Number of a moving contact.
+    /// Index among the moving contacts of each contact that moves.
     number: Vec<usize>,
     x: DMatrix<T>,
     v: DMatrix<T>,
-    /// Forces of moving sliders at rest; those that slip have none of their own.
+    /// Forces of the moving sliders that stick at present; slipping ones have no force of their own.
     p: DMatrix<T>,
-    /// Whether a moving slider slips.
+    /// For each moving slider, whether it slips at present.
     slips: Vec<bool>,
-    /// State of each column.
+    /// State that each column perturbs.
     carried: Vec<usize>,
 }
 
 /// Memory of a lapse, as large as the coordinates of all columns.
 struct Series<T: Number> {
-    /// R_movingᴴ
+    /// Product matrix R_movingᴴ.
     rows: DMatrix<T>,
     load: DMatrix<T>,
-    /// Three terms one after the other.
+    /// Three successive terms of the series.
     this: DMatrix<T>,
     next: DMatrix<T>,
     new: DMatrix<T>,
 }
 
 impl<'r, T: Number> SliderMap<'r, T> {
-    /// The map of a lapse; `moves` tells whether a contact slips in some sector.
+    /// Computes the map of a lapse; `moves` tells whether a contact slips in some sector.
     ///
     /// # Errors
     /// `NoConvergence` for perturbations that grow beyond all bounds; as [`Slipping::new`].
@@ -155,7 +156,7 @@ impl<'r, T: Number> SliderMap<'r, T> {
         self.follow(&slipping, &all_of(&slipping.list)?, interrupt)
     }
 
-    /// G_LS p_S
+    /// Effect G_LS p_S of sticking sliders on the slipping contacts.
     fn through_others(&self, slipping: &Slipping<T>, interrupt: &Interrupt<'_>) -> Result<DMatrix<T>> {
         let list = &slipping.list;
         let mut resting = Vec::new();
@@ -168,7 +169,7 @@ impl<'r, T: Number> SliderMap<'r, T> {
         product(&coupling, &selected(&self.p, &resting)?, CONTEXT, interrupt)
     }
 
-    /// Forces of slipping sliders, given by their places in the list, from coordinates and the sliders at rest.
+    /// Forces of those slipping sliders whose positions in the list are given, from coordinates and sticking sliders.
     fn forces(&self, slipping: &Slipping<T>, places: &[usize], interrupt: &Interrupt<'_>) -> Result<DMatrix<T>> {
         let coupled = self.through_others(slipping, interrupt)?;
         let mut forces = product(&selected(&slipping.rows, places)?, &self.x, CONTEXT, interrupt)?;
@@ -177,7 +178,7 @@ impl<'r, T: Number> SliderMap<'r, T> {
         Ok(forces)
     }
 
-    /// Sets these forces.
+    /// Sets the forces of those slipping sliders whose positions in the list are given.
     fn follow(&mut self, slipping: &Slipping<T>, places: &[usize], interrupt: &Interrupt<'_>) -> Result<()> {
         if places.is_empty() {
             return Ok(());
@@ -190,7 +191,7 @@ impl<'r, T: Number> SliderMap<'r, T> {
         Ok(())
     }
 
-    /// δ(r − w) of a contact at rest.
+    /// Perturbation δ(r − w) of the stretch of a sticking contact.
     fn stretch(&self, slipping: &Slipping<T>, contact: usize, interrupt: &Interrupt<'_>) -> Result<DMatrix<T>> {
         let ring = self.ring;
         let list = &slipping.list;
@@ -210,7 +211,7 @@ impl<'r, T: Number> SliderMap<'r, T> {
         Ok(stretch)
     }
 
-    /// Carries all columns over a time in which no contact changes.
+    /// Carries all columns over a time during which no contact changes.
     fn carry(
         &mut self,
         slipping: &Slipping<T>,
@@ -308,8 +309,9 @@ impl<'r, T: Number> SliderMap<'r, T> {
         2 * self.ring.order() + self.moving.len()
     }
 
-    /// The map from the states at the begin to those at the end, in which every sector takes the place of the one that it
-    /// follows. Velocities are divided by `omega`, and places of sliders multiplied by `scale`; `factor` is that of a turn of the ring.
+    /// The map from the states at the beginning to those at the end of the lapse, in which every sector takes the
+    /// place of the one that it follows. Velocities are divided by `omega`, and places of sliders multiplied by
+    /// `scale`; `factor` gives the factor of a turn of the ring.
     pub fn matrix(
         &self,
         (omega, scale): (f64, f64),
@@ -341,12 +343,12 @@ impl<'r, T: Number> SliderMap<'r, T> {
     }
 }
 
-/// Rows of a matrix.
+/// The given rows of a matrix.
 fn selected<T: Number>(a: &DMatrix<T>, rows: &[usize]) -> Result<DMatrix<T>> {
     filled(rows.len(), a.ncols(), CONTEXT, |i, j| a[(rows[i], j)])
 }
 
-/// All places of a list.
+/// All positions in a list.
 fn all_of(list: &[usize]) -> Result<Vec<usize>> {
     let mut all = Vec::new();
     for at in 0..list.len() {
@@ -355,13 +357,13 @@ fn all_of(list: &[usize]) -> Result<Vec<usize>> {
     Ok(all)
 }
 
-/// Whether one of the changes at the same time stops a slider that moves.
+/// Whether one of several simultaneous changes stops a slider that moves.
 fn stops_others(next: &[Change]) -> bool {
     let same = next.iter().take_while(|change| change.after == 0.0);
     same.into_iter().any(|change| !change.slips && change.speed != 0.0)
 }
 
-/// Largest entry.
+/// Largest modulus of an entry.
 fn size<T: Number>(a: &DMatrix<T>) -> f64 {
     a.iter().fold(0.0_f64, |m, z| {
         let size = Scalar::size(*z);

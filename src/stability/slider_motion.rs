@@ -4,21 +4,21 @@ use crate::contact::time_piece::Grazing;
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::fallible_matrix::copy_of_vector;
+use crate::linalg::libraries::DVector;
 use crate::stability::modal_ring::{ModalRing, Sliders};
-use nalgebra::DVector;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 const CONTEXT: &str = "the motion on modes";
 
-/// A force of one harmonic on coordinates, and on the relative motions that the modes leave out: Re(value e^{ihωt}).
+/// A force of one harmonic, Re(value e^{ihωt}), on coordinates and on the relative motions that the modes leave out.
 pub(crate) struct RingForce {
     pub harmonic: usize,
     pub modal: Vec<Complex64>,
     pub relative: Vec<Complex64>,
 }
 
-/// Coordinates, velocities and the places of all sliders.
+/// State of a block in time: modal coordinates q, velocities v and places w of all sliders.
 pub(crate) struct SliderState {
     pub q: DVector<f64>,
     pub v: DVector<f64>,
@@ -26,7 +26,7 @@ pub(crate) struct SliderState {
 }
 
 impl SliderState {
-    /// A copy.
+    /// A copy that returns an error if memory is short.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -39,42 +39,42 @@ impl SliderState {
     }
 }
 
-/// A change of one contact.
+/// A change of the state of one contact.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Change {
-    /// Time since the change before.
+    /// Time since the previous change.
     pub after: f64,
     pub contact: usize,
-    /// Whether it slips from now on.
+    /// Whether the contact slips from now on.
     pub slips: bool,
-    /// Rate x′ with which a stretch reaches its limit; and that of a slider which another change has turned around, so that it
-    /// stops while it moves. 0 where the time of the change does not matter.
+    /// Rate x′ at which a stretch reaches its limit; or of a slider that another change has turned round, so that it
+    /// stops while moving. 0 where the time of the change does not matter.
     pub speed: f64,
 }
 
-/// The changes of a lapse, from which perturbations are carried.
+/// Changes of contacts in a lapse, along which perturbations are carried.
 #[derive(Default)]
 pub(crate) struct Path {
-    /// Contacts that slip at the begin.
+    /// Contacts that slip at the beginning.
     pub first: Vec<usize>,
     pub changes: Vec<Change>,
-    /// Time from the last change to the end.
+    /// Time from the last change to the end of the lapse.
     pub rest: f64,
-    /// Contacts that have slipped.
+    /// For each contact, whether it has slipped.
     pub moved: Vec<bool>,
     pub grazing: Option<(usize, Grazing)>,
     /// Largest displacement and velocity of a coordinate at the ends of steps.
     pub largest: (f64, f64),
 }
 
-/// The equations of motion.
+/// The equations of motion of a block on modes.
 pub(crate) struct SliderMotion<'a> {
     pub ring: &'a ModalRing<f64>,
     pub forces: Vec<RingForce>,
     pub omega: f64,
-    /// The part of the period after which every sector repeats the motion of another one.
+    /// Part of the period after which every sector repeats the motion of another one.
     pub lapse: f64,
-    /// Play of each contact.
+    /// Play of each contact: friction limit over stiffness.
     pub play: Vec<f64>,
     pub interrupt: &'a Interrupt<'a>,
 }

@@ -4,10 +4,10 @@ use crate::error::{Result, Status, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::fallible_matrix::zero_vector;
 use crate::linalg::factors::lu::Lu;
+use crate::linalg::libraries::DVector;
 use crate::model::matrices::structure::Structure;
 use crate::stability::slider_map::SliderMap;
 use crate::stability::slider_motion::{Path, SliderMotion, SliderState};
-use nalgebra::DVector;
 
 const CONTEXT: &str = "shooting on modes";
 
@@ -19,22 +19,23 @@ const SLIDER_ORBIT_MOST_ITERATIONS: usize = 30;
 /// Kind: cap.
 const SLIDER_ORBIT_SHORTEST: f64 = 1.0 / 64.0;
 
-/// A periodic motion.
+/// A periodic motion of a block on modes.
 pub(crate) struct Orbit {
     pub state: SliderState,
     pub path: Path,
-    /// Contacts that slip in some sector.
+    /// For each contact, whether it slips in some sector.
     pub moves: Vec<bool>,
     /// Largest change over a lapse, relative to the motion.
     pub residual: f64,
 }
 
-/// A lapse from a state.
+/// Outcome of one lapse from a state.
 struct Trial {
     state: SliderState,
     path: Path,
     moves: Vec<bool>,
-    /// Change over the lapse, velocities over ω, places of sliders in units of coordinates.
+    /// Change of the state over the lapse; velocities are divided by ω, places of sliders are in units of
+    /// coordinates.
     change: DVector<f64>,
     residual: f64,
 }
@@ -86,7 +87,7 @@ pub(crate) fn orbit(
     }))
 }
 
-/// Factor that makes places of sliders coordinates.
+/// Factor that gives places of sliders the unit of coordinates.
 pub(crate) fn scale_of_sliders(motion: &SliderMotion<'_>) -> f64 {
     let largest = motion.ring.rows.amax();
     if largest > 0.0 { 1.0 / largest } else { 1.0 }
@@ -135,7 +136,7 @@ fn trial(motion: &SliderMotion<'_>, structure: &Structure, state: SliderState) -
     })
 }
 
-/// The correction of coordinates, velocities over ω and places of moving sliders in units of coordinates.
+/// The Newton correction of coordinates, velocities over ω, and places of moving sliders in units of coordinates.
 fn newton(
     motion: &SliderMotion<'_>,
     structure: &Structure,

@@ -13,9 +13,9 @@ use crate::linalg::dense::fallible_matrix::{
     add_product, adjoint, filled, invert_definite, product, zero_vector, zeros,
 };
 use crate::linalg::factors::lu::Scalar;
+use crate::linalg::libraries::{DMatrix, DVector};
 use crate::stability::modal_ring::ModalRing;
 use crate::time_integration::Number;
-use nalgebra::{DMatrix, DVector};
 
 const CONTEXT: &str = "the slipping contacts";
 
@@ -27,20 +27,20 @@ const SLIPPING_MOST_CHANGES: usize = 48;
 /// Kind: rounding.
 const SLIPPING_LEAST_PIVOT: f64 = 1e-8;
 
-/// The equations.
+/// The equations of a block while some contacts slip.
 pub(crate) struct Slipping<T: Number> {
-    /// The slipping contacts.
+    /// The slipping contacts, in the order of E.
     pub list: Vec<usize>,
-    /// E
+    /// Inverse E = A_LL⁻¹ over the slipping contacts.
     pub inverse: DMatrix<T>,
-    /// E R_L
+    /// Product E R_L.
     pub rows: DMatrix<T>,
-    /// Ω² − R_Lᴴ E R_L
+    /// Stiffness Ω² − R_Lᴴ E R_L of the coordinates.
     pub stiffness: DMatrix<T>,
     changes: usize,
 }
 
-/// A = 1/kt − G.
+/// Entry of A = 1/kt − G.
 fn entry<T: Number>(ring: &ModalRing<T>, i: usize, j: usize) -> T {
     let g = -ring.residual[(i, j)];
     if i == j {
@@ -81,12 +81,12 @@ impl<T: Number> Slipping<T> {
         })
     }
 
-    /// Place of a contact in the list.
+    /// Position of a contact in the list; `None` if it sticks.
     pub fn place(&self, contact: usize) -> Option<usize> {
         self.list.iter().position(|&e| e == contact)
     }
 
-    /// Lets a contact begin to slip, or end.
+    /// Lets a contact begin to slip, or stop slipping.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -111,7 +111,7 @@ impl<T: Number> Slipping<T> {
         Ok(())
     }
 
-    /// `false`: only the list has changed.
+    /// Adds a contact to the slipping ones; `false` where only the list was changed, not the matrices.
     fn add(&mut self, ring: &ModalRing<T>, contact: usize) -> Result<bool> {
         let (count, order) = (self.list.len(), ring.order());
         let mut b = zero_vector::<T>(count, CONTEXT)?;
@@ -147,7 +147,7 @@ impl<T: Number> Slipping<T> {
         Ok(true)
     }
 
-    /// `false`: only the list has changed.
+    /// Removes a contact from the slipping ones; `false` where only the list was changed, not the matrices.
     fn remove(&mut self, at: usize) -> Result<bool> {
         self.list.remove(at);
         let (count, order) = (self.list.len(), self.stiffness.nrows());

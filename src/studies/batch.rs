@@ -34,10 +34,11 @@ const PAUSE: Duration = Duration::from_millis(2);
 /// Kind: tuned; measured on: not recorded.
 const BATCH_BETWEEN_CHECKS: usize = 16;
 
-/// Runs the work of a thread in the surroundings that its caller wants; false: the thread cannot work, and others do it all.
+/// A function that runs the work of a thread in the surroundings that the caller wants for it. It returns `false` if
+/// this thread cannot work; the others then do it all.
 pub type Surroundings<'a> = dyn Fn(&mut dyn FnMut()) -> bool + Sync + 'a;
 
-/// Results of a batch.
+/// Results of a batch of designs.
 #[derive(Debug)]
 pub struct Batch {
     peaks: Vec<DesignPeak>,
@@ -53,7 +54,7 @@ impl Batch {
         &self.peaks
     }
 
-    /// The branch of a design, if branches were kept and it has one; it leaves the batch.
+    /// Takes the branch of a design out of the batch, if branches were kept and the design has one.
     pub fn take_branch(&mut self, design: usize) -> Option<Branch> {
         self.branches.get_mut(design)?.take()
     }
@@ -64,13 +65,13 @@ impl Batch {
         self.branches.get(design)?.as_ref()
     }
 
-    /// Number of the responses that were asked for.
+    /// Number of requested responses.
     #[must_use]
     pub fn responses(&self) -> usize {
         self.responses
     }
 
-    /// `Ok`, or `StoppedByCaller` where some designs were not solved.
+    /// Status: `Ok`, or `StoppedByCaller` where some designs were not solved.
     #[must_use]
     pub fn status(&self) -> Status {
         self.status
@@ -90,11 +91,11 @@ struct Work<'a> {
     stop: AtomicBool,
 }
 
-/// Results of one thread: number of a design and what was found.
+/// Results of one thread: index and solution of each of its designs.
 type Found = Vec<(usize, Solved)>;
 
 impl Work<'_> {
-    /// The next design, if there is one.
+    /// Index of the next design to solve; `None` when all are taken or the batch is stopped.
     fn take(&self) -> Option<usize> {
         if self.stop.load(Ordering::Relaxed) {
             return None;
@@ -103,7 +104,7 @@ impl Work<'_> {
         (design < self.designs).then_some(design)
     }
 
-    /// Solves a design; `None` where the caller stopped that.
+    /// Solves a design; `None` where the caller stopped it.
     fn solve(&self, design: usize, hooks: &mut Hooks<'_>) -> Option<Solved> {
         let p = self.parameters.len();
         let values = &self.values[design * p..(design + 1) * p];
@@ -116,7 +117,7 @@ impl Work<'_> {
         Some(solved)
     }
 
-    /// Solves designs until there are none, without hooks.
+    /// Solves designs until none is left, without the caller's hooks.
     fn run(&self) -> Result<Found> {
         let stopped = || self.stop.load(Ordering::Relaxed);
         let mut found = Vec::new();
@@ -133,7 +134,7 @@ impl Work<'_> {
         Ok(found)
     }
 
-    /// The same in the thread of the caller, with its hooks.
+    /// Solves designs until none is left, in the thread of the caller, with its hooks.
     fn run_with(&self, hooks: &mut Hooks<'_>, interrupt: &Interrupt<'_>) -> Result<Found> {
         let mut found = Vec::new();
         while let Some(design) = self.take() {
@@ -174,7 +175,7 @@ impl Work<'_> {
         self.done.load(Ordering::Relaxed) as f64 / self.designs.max(1) as f64
     }
 
-    /// Asks the caller whether to stop, and passes that on.
+    /// Asks the caller whether to stop, and passes a stop on to all threads.
     fn watch(&self, interrupt: &Interrupt<'_>) -> bool {
         let stopped = interrupt.phase(Phase::Continuation, self.share_done()).is_err();
         if stopped {
@@ -211,7 +212,8 @@ pub fn batch(
     )
 }
 
-/// The same, whose threads are started as the caller wants, and work within its surroundings.
+/// Computes a batch as `batch` does, with threads that the caller's function `together` starts and that work within
+/// its surroundings.
 ///
 /// # Errors
 /// As [`batch`].
@@ -310,7 +312,8 @@ pub fn batch_within(
     Ok(batch)
 }
 
-/// Results of all threads, that of the caller first. Where the system has no further thread, those at hand do the work.
+/// Results of all threads, those of the caller's thread first. Where the system has no further thread, the existing
+/// ones do the work.
 fn run(
     work: &Work<'_>,
     hooks: &mut Hooks<'_>,

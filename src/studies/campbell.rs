@@ -26,21 +26,21 @@ const CAMPBELL_MAX_HALVINGS: usize = 40;
 
 const CONTEXT: &str = "the Campbell diagram";
 
-/// Modes over speeds; every list has the modes of one speed after those of the other.
+/// Damped modes over the speed of rotation. Lists hold the modes of one speed after those of the speed before.
 #[derive(Clone, Debug, Default)]
 pub struct Campbell {
-    /// Speeds.
+    /// Speeds of rotation, rising.
     pub speeds: Vec<f64>,
-    /// Modes per speed.
+    /// Number of modes at each speed.
     pub count: usize,
     /// Signed nodal diameter of the modes, −N/2 < d ≤ N/2.
     pub diameter: i64,
-    /// Damped angular frequencies, rising at each speed; NaN where fewer motions oscillate, and at a speed whose modes were not found,
-    /// which is told to the log.
+    /// Damped angular frequencies, rising at each speed. NaN where fewer motions oscillate, and at a speed whose
+    /// modes were not found, which the log reports.
     pub omega: Vec<f64>,
-    /// Damping ratios.
+    /// Damping ratios; negative: the motion grows.
     pub damping_ratio: Vec<f64>,
-    /// Directions as in [`DampedModes::direction`].
+    /// Sense in which the frequency of each mode changes with the speed, as [`DampedModes::direction`].
     pub direction: Vec<i64>,
     /// Speeds at which EO·Ω is a natural frequency of the wave that EO excites, by engine order, then by speed.
     pub crossings: Vec<Crossing>,
@@ -49,22 +49,22 @@ pub struct Campbell {
 /// An engine order at the frequency of a mode of the wave that it excites.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
-    /// EO
+    /// Engine order EO that meets the mode.
     pub engine_order: i64,
     /// Signed nodal diameter EO mod N of the wave, −N/2 < d ≤ N/2.
     pub diameter: i64,
-    /// Ω
+    /// Speed of rotation Ω at the crossing.
     pub speed: f64,
-    /// ω = EO·Ω
+    /// Angular frequency ω = EO·Ω at the crossing.
     pub omega: f64,
-    /// Direction of the mode.
+    /// Sense in which the frequency of the mode changes with the speed, as in the diagram.
     pub direction: i64,
 }
 
-/// The `count` lowest damped modes of a signed nodal diameter, modulo N, at each of `speeds`, which rise, and the speeds
-/// between them at which one of `engine_orders` meets a mode. An engine order excites the wave EO mod N: it meets the modes of
-/// that sense of the diameter, whichever sense was given, and none of another diameter, which is told to the log. The speed of
-/// the model has no effect.
+/// Computes the `count` lowest damped modes of a signed nodal diameter, modulo N, at each of the rising `speeds`; and
+/// the speeds between them at which one of `engine_orders` meets a mode. An engine order excites the wave EO mod N:
+/// it meets the modes of this sense of the diameter, whichever sense was given. The log reports engine orders that
+/// excite another diameter and thus meet no mode. The speed of the model has no effect.
 ///
 /// # Errors
 /// `Dimension`, `NotFinite` or `Argument` for the speeds, the count or an engine order; those of
@@ -148,7 +148,7 @@ struct ModesAtSpeed<'a> {
     rotating: Model,
     contacts: LinearContacts,
     count: usize,
-    /// Speeds of the last lines whose modes were not found, with a sentence.
+    /// Speeds whose modes were not found in the last diagram, by index, each with the reason.
     failed: Vec<(usize, String)>,
     interrupt: &'a Interrupt<'a>,
 }
@@ -193,14 +193,15 @@ impl ModesAtSpeed<'_> {
         Ok(found)
     }
 
-    /// Tells the speeds that are left out.
+    /// Logs the speeds that are left out.
     fn tell_failures(&self, hooks: &mut Hooks<'_>) {
         for (_, text) in &self.failed {
             hooks.log(LogLevel::Warn, text);
         }
     }
 
-    /// The parts between the speeds of a diagram in which equally many motions oscillate, but for those that are left out.
+    /// The intervals between speeds of a diagram in which equally many motions oscillate; speeds that are left out
+    /// bound none.
     fn stretches(&mut self, lines: &Campbell) -> Result<Vec<Stretch>> {
         let mut stretches = Vec::new();
         let mut before = None;
@@ -244,7 +245,7 @@ impl ModesAtSpeed<'_> {
     }
 }
 
-/// The sentence for an error that concerns one speed, as modes that are not found; other errors are returned.
+/// The reason for an error that concerns one speed only, as modes that are not found; other errors are returned.
 fn reason_of_one_speed(error: Error, text: &str) -> Result<String> {
     if matches!(error.status, Status::NoConvergence | Status::Singular) {
         return Ok(format!("{text}: {error}"));
@@ -298,7 +299,7 @@ impl Known {
         })
     }
 
-    /// ω − EO·Ω of mode k.
+    /// Difference ω − EO·Ω of mode k, as a point (speed, difference).
     fn gap(&self, k: usize, order: f64) -> (f64, f64) {
         (self.speed, self.omega[k] - order * self.speed)
     }
@@ -309,7 +310,7 @@ impl Known {
 struct Stretch {
     low: Known,
     high: Known,
-    /// It begins at the first speed.
+    /// Whether the stretch begins at the first speed.
     is_first: bool,
 }
 
@@ -326,8 +327,8 @@ fn known(found: &Campbell, i: usize) -> Result<Known> {
     })
 }
 
-/// Divides a stretch until equally many motions oscillate at both ends of each part. Parts that stay divided are too
-/// short to be seen.
+/// Divides a stretch until equally many motions oscillate at both ends of each part. Parts in which the numbers still
+/// differ are too short to matter.
 fn divide(
     at: &mut impl FnMut(f64) -> Result<DampedModes>,
     whole: Stretch,
@@ -402,7 +403,7 @@ fn meetings(
     Ok(())
 }
 
-/// Tells the first mode that grows, and at how many speeds one does.
+/// Logs the first mode that grows, and the number of speeds at which one does.
 fn tell_growth(found: &Campbell, is_wheel: bool, hooks: &mut Hooks<'_>) {
     let grows = |row: &[f64]| row.iter().position(|ratio| *ratio < GROWS);
     let mut growing = found
@@ -426,8 +427,9 @@ fn tell_growth(found: &Campbell, is_wheel: bool, hooks: &mut Hooks<'_>) {
     hooks.log(LogLevel::Warn, &text);
 }
 
-/// The speed between two at which mode k has the frequency EO·Ω, by the Illinois variant of regula falsi, and the
-/// modes there; `None` where the frequency jumps over EO·Ω, or the mode ceases to oscillate between the two.
+/// The speed between two others at which mode k has the frequency EO·Ω, by the Illinois variant of regula falsi, and
+/// the modes at this speed; `None` where the frequency jumps over EO·Ω, or the mode ceases to oscillate between the
+/// two.
 fn meet(
     at: &mut impl FnMut(f64) -> Result<DampedModes>,
     k: usize,

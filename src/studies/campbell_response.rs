@@ -21,13 +21,14 @@ const CAMPBELL_LOWEST: f64 = 0.2;
 /// The highest resonance of a mode under one force.
 #[derive(Clone, Copy, Debug)]
 pub struct CampbellResonance {
-    /// Speed of rotation at which the engine order meets it; NaN where the force finds no resonance, as all that follows.
+    /// Speed of rotation at which the engine order meets the resonance. NaN, as are the other numbers, where the
+    /// force finds no resonance.
     pub speed: f64,
     /// Angular frequency of the force.
     pub omega: f64,
-    /// Steady amplitude of the response degree of freedom of the mode, of the fundamental.
+    /// Steady amplitude of the mode's response degree of freedom, in the fundamental.
     pub amplitude: f64,
-    /// Damping ratio there.
+    /// Damping ratio at the steady amplitude.
     pub damping_ratio: f64,
     /// Largest amplitude of a passage at the acceleration; NaN without acceleration.
     pub passed: f64,
@@ -36,7 +37,7 @@ pub struct CampbellResonance {
 }
 
 impl CampbellResonance {
-    /// No resonance.
+    /// Numbers where the force finds no resonance: NaN.
     const NONE: Self = Self {
         speed: f64::NAN,
         omega: f64::NAN,
@@ -46,7 +47,7 @@ impl CampbellResonance {
         error: f64::NAN,
     };
 
-    /// Amplitude of the passage over the steady one.
+    /// Ratio of the largest amplitude of the passage to the steady amplitude.
     #[must_use]
     pub fn factor(&self) -> f64 {
         self.passed / self.amplitude
@@ -101,7 +102,7 @@ pub fn campbell_response(
     Ok(all)
 }
 
-/// The largest amplitude of a passage.
+/// The largest amplitude of a passage through a resonance.
 fn passed(
     (branch, model): (&Branch, &Model),
     at: &CampbellResonance,

@@ -19,25 +19,25 @@ const CONTEXT: &str = "the noise of conditions";
 /// make the matrix singular, and rounding of the others' negative.
 const LEAST_CONDITION_VARIANCE: f64 = 1e-6;
 
-/// Covariance of the residuals of the conditions, and its Cholesky factor, column-major.
+/// Covariance of the residuals of the conditions, with its Cholesky factor; both column-major.
 pub(crate) struct ConditionNoise {
     covariance: Vec<f64>,
     factor: Vec<f64>,
     modes: usize,
 }
 
-/// Errors of the estimate of a mode.
+/// Errors of the estimate of a mode, for the covariance of its conditions.
 pub(crate) struct ModeErrors<'a> {
-    /// Q.
+    /// Covariance Q of the errors dp of the shape, column-major.
     pub shape: &'a [f64],
-    /// 2ω wₖ.
+    /// Change 2ω wₖ of the squared frequency by each independent part k of the pattern.
     pub by_pattern: &'a [f64],
-    /// 4ω² v.
+    /// Variance 4ω² v of the squared frequency that does not stem from the pattern.
     pub own: f64,
 }
 
 impl ConditionNoise {
-    /// Residuals of one deviation, independent of each other.
+    /// Independent residuals, all of the same standard deviation.
     pub fn equal(modes: usize, deviation: f64) -> Result<Self> {
         let mut noise = Self {
             covariance: try_vec(modes * modes, 0.0, CONTEXT)?,
@@ -51,7 +51,7 @@ impl ConditionNoise {
         Ok(noise)
     }
 
-    /// R of the errors of a mode; `matrices` are Σ L_sk A_s, one after the other.
+    /// Covariance R of the residuals that the errors of a mode cause; `matrices` are Σ L_sk A_s, one after the other.
     pub fn of_products(modes: usize, matrices: &[f64], errors: &ModeErrors<'_>) -> Result<Self> {
         let mut noise = Self::equal(modes, 0.0)?;
         for (sum, q) in noise.covariance.iter_mut().zip(errors.shape) {
@@ -77,7 +77,7 @@ impl ConditionNoise {
         Ok(noise)
     }
 
-    /// Multiplies the residuals by a factor.
+    /// Multiplies the residuals by a factor, and thus the covariance by its square.
     pub fn scale(&mut self, factor: f64) {
         for v in &mut self.covariance {
             *v *= factor * factor;
@@ -97,7 +97,7 @@ impl ConditionNoise {
         }
     }
 
-    /// Residuals over their deviations, Lᵀ μ of multipliers μ.
+    /// Products Lᵀ μ of the multipliers μ: residuals over their standard deviations.
     pub fn weighted(&self, multipliers: &[f64], out: &mut [f64]) {
         for (column, out) in self.factor.chunks_exact(self.modes).zip(out) {
             *out = column.iter().zip(multipliers).map(|(l, m)| l * m).sum();
@@ -105,7 +105,7 @@ impl ConditionNoise {
     }
 }
 
-/// Adds A B of square column-major matrices.
+/// Adds the product A B of square column-major matrices to `out`.
 fn add_product(a: &[f64], b: &[f64], out: &mut [f64], n: usize) {
     for (of_b, out) in b.chunks_exact(n).zip(out.chunks_exact_mut(n)) {
         for (column, b) in a.chunks_exact(n).zip(of_b) {
@@ -116,7 +116,8 @@ fn add_product(a: &[f64], b: &[f64], out: &mut [f64], n: usize) {
     }
 }
 
-/// L of a covariance L Lᵀ, column-major with zeros above the diagonal. Columns whose pivot is lost in rounding are left out.
+/// Cholesky factor L of a covariance L Lᵀ, column-major with zeros above the diagonal. Columns whose pivot is lost in
+/// rounding are zero.
 pub(crate) fn lower_factor(covariance: &[f64], n: usize) -> Result<Vec<f64>> {
     let mut l = try_vec(n * n, 0.0, CONTEXT)?;
     l.copy_from_slice(covariance);

@@ -15,23 +15,24 @@ use crate::studies::range_ends::at_ends;
 pub struct DesignPeak {
     /// Amplitude; NaN without a maximum.
     pub amplitude: f64,
-    /// Its angular frequency; NaN without a maximum.
+    /// Angular frequency of the maximum; NaN without a maximum.
     pub omega: f64,
     /// `Ok`; `StoppedNoPeak` where the amplitude has no maximum within the range; the status of a branch that ended
     /// early, whose maxima may not be all; or the error of the design.
     pub status: Status,
-    /// Points of the curve.
+    /// Number of points of the curve.
     pub points: usize,
-    /// Sentence of another status than `Ok`.
+    /// Reason of a status that is not `Ok`.
     pub reason: Option<Error>,
-    /// Amplitude and angular frequency of the highest peak of each response that was asked for; NaN without a maximum. None
+    /// Amplitude and angular frequency of the highest peak of each requested response; NaN without a maximum. Empty
     /// where the design failed.
     pub responses: Vec<(f64, f64)>,
-    /// The larger value of each response at the ends of the range, and its angular frequency: above the highest peak, that lies beyond.
+    /// The larger value of each response at the two ends of the range, with its angular frequency. If it exceeds the
+    /// highest peak, a higher one lies beyond the range.
     pub ends: Vec<(f64, f64)>,
 }
 
-/// Amplitude and frequency of the highest of some peaks; NaN without one.
+/// Amplitude and angular frequency of the highest of some peaks; NaN without peaks.
 fn highest(peaks: &[Special]) -> (f64, f64) {
     let mut found = (f64::NAN, f64::NAN);
     for peak in peaks {
@@ -43,7 +44,7 @@ fn highest(peaks: &[Special]) -> (f64, f64) {
 }
 
 impl DesignPeak {
-    /// A design that was not solved.
+    /// Result of a design that was not solved.
     pub(crate) fn not_solved() -> Self {
         Self {
             amplitude: f64::NAN,
@@ -56,7 +57,7 @@ impl DesignPeak {
         }
     }
 
-    /// A design that failed.
+    /// Result of a design that failed with an error.
     fn failed(error: Error) -> Self {
         Self {
             status: error.status,
@@ -85,14 +86,14 @@ impl DesignPeak {
     }
 }
 
-/// A solved design.
+/// Solution of one design.
 pub(crate) struct Solved {
     pub peak: DesignPeak,
-    /// Its branch, if it is kept.
+    /// Branch of the design, if branches are kept.
     pub branch: Option<Branch>,
 }
 
-/// Solves a design.
+/// Solves one design and finds its highest peak.
 pub(crate) fn solve_design(
     model: &Model,
     solver: &SolverOptions,

@@ -42,9 +42,10 @@ use crate::studies::fit::preparation::{check, predictor};
 use crate::studies::fit::searches::{Searched, searched};
 use crate::studies::fit::suspected_units::suspected;
 
-/// Fits parameters of `model` to data. With a tolerance of the solver it is lowered where the errors by harmonics would exceed a third
-/// of the standard deviations. Many data are searched by a share of them first; stopped there, the result is that of the share. Where the
-/// given start fits poorly, or friction is not seen from it, starts towards sliding and sticking are tried; `options.starts` adds others.
+/// Fits parameters of `model` to data. If the solver has a tolerance, it is lowered where errors by harmonics would
+/// exceed a third of the standard deviations. Many data are first replaced by a share of them; a fit that is stopped
+/// in this stage returns the result of the share. Where the given start fits poorly, or the data do not depend on
+/// friction there, starts towards sliding and sticking are tried; `options.starts` adds others.
 ///
 /// # Errors
 /// `Singular` where the data do not tell the unknowns, with a sentence about the reason; `NoConvergence` where the model has no

@@ -9,12 +9,12 @@ use std::thread;
 /// Kind: cap.
 pub const STACK: usize = 8 << 20;
 
-/// Runs its last argument in this thread while others, at most the given number, run the task with their numbers from 0.
-/// The last argument gets how many were started, fewer where the system has no further one. Returns after all of them. The
-/// task does not panic.
+/// A function that runs its last argument in this thread while up to a given number of other threads run the task,
+/// each with its index from 0. The last argument receives the number of threads started, which is lower where the
+/// system has no further ones. The function returns after all of them. The task does not panic.
 pub type Together = fn(usize, &(dyn Fn(usize) + Sync), &mut dyn FnMut(usize));
 
-/// Threads of the standard library.
+/// Starts threads of the standard library, as a `Together` function does.
 pub fn of_std(others: usize, task: &(dyn Fn(usize) + Sync), own: &mut dyn FnMut(usize)) {
     if others == 0 {
         return own(0);

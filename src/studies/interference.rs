@@ -9,18 +9,18 @@ use crate::model::Model;
 
 const CONTEXT: &str = "the interference diagram";
 
-/// Modes of all waves; every list has the modes of one diameter after those of the other.
+/// Modes of all waves of a wheel. Lists hold the modes of one diameter after those of the diameter before.
 #[derive(Clone, Debug, Default)]
 pub struct Interference {
     /// Signed nodal diameters −N/2 < d ≤ N/2, rising: the wave in which sector s + 1 lags by 2πd/N.
     pub diameters: Vec<i64>,
-    /// Modes per diameter.
+    /// Number of modes of each diameter.
     pub count: usize,
     /// Damped angular frequencies, rising in each diameter; NaN where fewer motions oscillate.
     pub omega: Vec<f64>,
     /// Damping ratios; negative: the motion grows.
     pub damping_ratio: Vec<f64>,
-    /// Directions as in [`DampedModes::direction`].
+    /// Sense in which the frequency of each mode changes with the speed, as [`DampedModes::direction`].
     pub direction: Vec<i64>,
     /// Whether both senses of every diameter have the same frequencies and damping ratios.
     pub has_equal_senses: bool,
@@ -44,7 +44,7 @@ impl Interference {
         Ok(())
     }
 
-    /// Turns the order of the diameters round.
+    /// Reverses the order of the diameters.
     fn reverse(&mut self) {
         self.diameters.reverse();
         reverse_rows(&mut self.omega, self.count);
@@ -60,9 +60,9 @@ fn reverse_rows<T>(list: &mut [T], count: usize) {
     }
 }
 
-/// The `count` lowest damped modes of all N waves of a wheel at the speed of the model: together all modes of the wheel, each
-/// once. Both senses of a diameter are computed where they differ: with gyroscopic or aerodynamic forces and with unsymmetric
-/// matrices. The waves that grow are told to the log.
+/// Computes the `count` lowest damped modes of each of the N waves of a wheel at the speed of the model: together all
+/// modes of the wheel, each once. Both senses of a diameter are computed where they differ: with gyroscopic or
+/// aerodynamic forces, and with unsymmetric matrices. The log reports waves that grow.
 ///
 /// # Errors
 /// `Unsupported` for a plain structure; those of [`damped_modes`](crate::analysis::linear::damped_modes::damped_modes);
@@ -125,7 +125,7 @@ pub fn interference(
     Ok(all)
 }
 
-/// Tells the least damped mode, and in how many waves one grows.
+/// Logs the least damped mode, and in how many waves a mode grows.
 fn tell_growth(found: &Interference, hooks: &mut Hooks<'_>) {
     let rows = || found.damping_ratio.chunks_exact(found.count);
     let growing = rows().filter(|row| row.iter().any(|ratio| *ratio < GROWS)).count();

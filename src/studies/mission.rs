@@ -50,36 +50,36 @@ const CONTEXT: &str = "the mission";
 pub struct MissionCrossing {
     /// Time of the largest amplitude.
     pub time: f64,
-    /// Angular frequency of the forces then.
+    /// Angular frequency of the forces at this time.
     pub omega: f64,
-    /// dω/dt then.
+    /// Rate dω/dt of the frequency at this time.
     pub rate: f64,
-    /// Largest amplitude of the degree of freedom in the fundamental.
+    /// Largest amplitude of the degree of freedom, in the fundamental.
     pub amplitude: f64,
-    /// That of the highest steady resonance; NaN without one.
+    /// Amplitude of the highest steady resonance; NaN without a resonance.
     pub steady: f64,
-    /// Cycles with at least 1/√2 of the largest amplitude around it.
+    /// Number of cycles, around the largest one, with at least 1/√2 of the largest amplitude.
     pub cycles: f64,
 }
 
-/// A mode over a mission.
+/// Vibration in a mode over a mission.
 #[derive(Clone, Debug)]
 pub struct Mission {
     /// Amplitude of the degree of freedom at each time, in the fundamental.
     pub amplitude: Vec<f64>,
-    /// Cycles with amplitudes below the first edge, between edges, and above the last one.
+    /// Numbers of cycles with amplitudes below the first edge, between edges, and above the last one.
     pub cycles: Vec<f64>,
-    /// Sum of Miner of each stress.
+    /// Damage of each stress, as Miner's sum.
     pub damage: Vec<f64>,
-    /// Passages through the resonance.
+    /// Passages through the resonance, in the order of time.
     pub crossings: Vec<MissionCrossing>,
-    /// Steps of the slow flow.
+    /// Number of steps of the slow flow.
     pub steps: usize,
-    /// Amplitude of the highest steady resonance over that of the computed one, minus 1; NaN without one.
+    /// Amplitude of the highest steady resonance over that of the computed resonance, minus 1; NaN without one.
     pub error: f64,
 }
 
-/// Follows a mode through a mission.
+/// Follows the vibration in a mode through a mission.
 ///
 /// # Errors
 /// Those of [`MissionOptions::check`] and of [`synthesise`](crate::synthesise); `Unsupported` for an unbalance; `Argument` where the
@@ -124,7 +124,7 @@ pub fn mission(
     Ok(walk.found)
 }
 
-/// A step: its end, the amplitude there, and the cycles in it.
+/// One step: time and frequency at its end, amplitude, and number of cycles in it.
 #[derive(Clone, Copy)]
 struct Step {
     time: f64,
@@ -193,7 +193,7 @@ impl Walk<'_> {
         try_push(&mut self.found.amplitude, amplitude, CONTEXT)
     }
 
-    /// One step of a length, with the oscillator of its begin, then of its middle.
+    /// Makes one step of the given length, with the oscillator at its beginning, then at its middle.
     fn step(&mut self, (omega, rate, length): (f64, f64, f64), q: Complex64) -> Result<Complex64> {
         let mut end = q;
         for _ in 0..2 {
@@ -209,7 +209,7 @@ impl Walk<'_> {
         Ok(end)
     }
 
-    /// Counts the cycles of a step that ends at a time and frequency.
+    /// Counts the cycles of a step that ends at the given time and frequency.
     fn count(
         &mut self,
         (time, omega, rate, length): (f64, f64, f64, f64),
@@ -242,7 +242,7 @@ impl Walk<'_> {
         try_push(&mut self.steps, step, CONTEXT)
     }
 
-    /// Lists the passages: each is the highest amplitude between two changes of the side.
+    /// Lists the passages through the resonance: each is the largest amplitude between two changes of the side.
     fn crossings(&mut self, steady: f64) -> Result<()> {
         let steps = &self.steps;
         let mut changes = Vec::new();
@@ -280,7 +280,7 @@ impl Walk<'_> {
     }
 }
 
-/// The longest step that the flow allows.
+/// The longest step that the change of frequency and the oscillator allow.
 fn longest_step((omega, rate): (f64, f64), at: &Oscillator, q: Complex64) -> f64 {
     let natural = at.square.max(0.0).sqrt();
     let width = at.decay().abs();

@@ -32,9 +32,9 @@ pub(crate) struct Reduced {
     pub sectors: usize,
     pub squares: Vec<f64>,
     pub of_mass: bool,
-    /// One for each sector.
+    /// Matrices A_s over the tuned modes, one for each sector.
     pub matrices: Vec<f64>,
-    /// Motions of the measured points, column-major.
+    /// Motions of the measured points in the tuned modes, column-major.
     pub rows: Vec<f64>,
 }
 
@@ -43,7 +43,7 @@ impl Reduced {
         self.rows.len() / self.modes
     }
 
-    /// Σ δ_s A_s.
+    /// Matrix Σ δ_s A_s of a pattern δ.
     pub fn of_pattern(&self, delta: &[f64]) -> Result<Vec<f64>> {
         let m = self.modes;
         let mut sum = try_vec(m * m, 0.0, CONTEXT)?;
@@ -55,7 +55,8 @@ impl Reduced {
         Ok(sum)
     }
 
-    /// Matrices of independent parts of the pattern, one after the other: `lower` is the Cholesky factor of its covariance.
+    /// Matrices of the independent parts of the pattern, one after the other; `lower` is the Cholesky factor of its
+    /// covariance.
     pub fn of_parts(&self, lower: &[f64]) -> Result<Vec<f64>> {
         let mut parts = try_vec(self.matrices.len(), 0.0, CONTEXT)?;
         for (part, column) in parts
@@ -76,7 +77,7 @@ impl Reduced {
         }
     }
 
-    /// Hᵀ y.
+    /// Product Hᵀ y with the motions H of the measured points.
     fn seen(&self, y: &[f64], out: &mut [f64]) {
         for (column, out) in self.rows.chunks_exact(self.points()).zip(out) {
             *out = column.iter().zip(y).map(|(h, y)| h * y).sum();
@@ -94,7 +95,7 @@ impl Reduced {
     }
 }
 
-/// A measured mode and its estimate.
+/// A measured mode, with the estimate of its motion and frequency.
 pub(crate) struct Observed {
     pub frequency: f64,
     pub of_frequency: f64,
@@ -102,13 +103,13 @@ pub(crate) struct Observed {
     pub of_shape: f64,
     p: Vec<f64>,
     omega: f64,
-    /// dp, dω for dδ = 0, then their derivatives by each δ.
+    /// Steps dp, dω for dδ = 0; then their derivatives by each δ.
     steps: Vec<f64>,
     noise: ConditionNoise,
 }
 
 impl Observed {
-    /// A measurement; frequency and shape of size 1, with their standard deviations.
+    /// A measured mode: frequency and shape, both scaled to size 1, with their standard deviations.
     pub fn new(
         (frequency, of_frequency): (f64, f64),
         (shape, of_shape): (Vec<f64>, f64),
@@ -128,7 +129,8 @@ impl Observed {
         })
     }
 
-    /// The first estimate: the motion that shows the shape and obeys the equations of the tuned wheel but for some per cent.
+    /// Makes the first estimate: the motion that shows the measured shape and obeys the equations of the tuned wheel
+    /// to some per cent.
     pub fn start(&mut self, reduced: &Reduced, interrupt: &Interrupt<'_>) -> Result<()> {
         let m = reduced.modes;
         let mut lu = Lu::new(m, 1)?;
@@ -146,7 +148,7 @@ impl Observed {
         Ok(())
     }
 
-    /// Adds JᵀJ and Jᵀe of the weighted residuals e + J dδ, and returns Σ e².
+    /// Adds JᵀJ and Jᵀe of the weighted residuals e + J dδ to the normal equations, and returns Σ e².
     pub fn add_normal(
         &mut self,
         reduced: &Reduced,
@@ -210,7 +212,7 @@ impl Observed {
         if reduced.of_mass { -self.omega * self.omega } else { 1.0 }
     }
 
-    /// Writes the matrix of the equations above, and returns D.
+    /// Writes the matrix of the equations of an adjustment to `lu`, and returns its part D.
     fn assemble(&self, reduced: &Reduced, pattern: &[f64], lu: &mut Lu<f64>) -> Result<Vec<f64>> {
         let m = reduced.modes;
         let width = 2 * m + 1;
@@ -245,8 +247,9 @@ impl Observed {
         Ok(d)
     }
 
-    /// Sets the noise of the conditions to that of the errors which are left. `matrices` are those of independent parts of the pattern,
-    /// whose covariance has the Cholesky factor `lower`. The steps are those of the last normal equations.
+    /// Sets the noise of the conditions to that of the remaining errors. `matrices` belong to the independent parts
+    /// of the pattern, whose covariance has the Cholesky factor `lower`. The steps are those of the last normal
+    /// equations.
     pub fn know_errors(
         &mut self,
         reduced: &Reduced,
@@ -303,7 +306,7 @@ impl Observed {
         Ok(())
     }
 
-    /// Moves the estimate by the step of a change of the pattern.
+    /// Moves the estimate by the step that belongs to a change of the pattern.
     pub fn follow(&mut self, change: &[f64], reduced: &Reduced) {
         let m = reduced.modes;
         let width = 2 * m + 1;
@@ -325,7 +328,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Adds factor · A x of a column-major matrix.
+/// Adds factor · A x of a column-major matrix A to `out`.
 fn add_product(factor: f64, a: &[f64], x: &[f64], out: &mut [f64]) {
     for (column, x) in a.chunks_exact(x.len().max(1)).zip(x) {
         for (out, a) in out.iter_mut().zip(column) {

@@ -49,39 +49,40 @@ const RUN_UP_AVERAGED: f64 = 2.0 * TAU;
 /// A run-up by the slow flow.
 #[derive(Clone, Debug)]
 pub struct RunUp {
-    /// Turns of the forces.
+    /// Turns of the forces, one after the other.
     pub turns: Vec<RunUpTurn>,
     /// Largest displacement of the run-up.
     pub largest: f64,
     /// Angular frequency of the forces at that time.
     pub largest_omega: f64,
-    /// That time, from the begin.
+    /// Time of the largest displacement, from the beginning of the run-up.
     pub largest_time: f64,
-    /// Relative error of the largest displacement: by how much three leads of the integration in time change it. Without
-    /// integration it is an
-    /// estimate that may be too small, NaN where the mode has no resonance under these forces to compare with.
+    /// Relative error of the largest displacement: its change over three leads of the integration in time. Without
+    /// integration it is an estimate that may be too small; NaN where the mode has no resonance under these forces to
+    /// compare with.
     pub error: f64,
     /// The largest displacement by the slow flow alone.
     pub slow_flow: f64,
-    /// Turns that were integrated in time, as many as the run-up has where all were; 0: none.
+    /// Number of turns that were integrated in time: all turns of the run-up, some, or 0.
     pub integrated: usize,
     /// The largest displacement without the memory of sliders.
     pub without_memory: f64,
-    /// Largest displacement of the highest steady resonance within the mode, in the measure of `largest`: with the mean and all harmonics;
-    /// NaN without one.
+    /// Largest displacement of the highest steady resonance within the mode, measured as `largest`, with the mean and
+    /// all harmonics; NaN without a resonance.
     pub steady: f64,
 }
 
 impl RunUp {
-    /// Largest displacement over that of the steady resonance. Both have in them how far constant forces displace.
+    /// Ratio of the largest displacement to that of the steady resonance. Both include the displacement by constant
+    /// forces.
     #[must_use]
     pub fn factor(&self) -> f64 {
         self.largest / self.steady
     }
 }
 
-/// Follows the amplitude of a plain model while the frequency of its forces changes at a constant rate, from the steady motion at the first
-/// frequency on, by the slow flow of its nonlinear mode.
+/// Follows the amplitude of a plain model while the frequency of its forces changes at a constant rate. It starts
+/// from the steady motion at the first frequency, and uses the slow flow of the model's nonlinear mode.
 ///
 /// # Errors
 /// Those of [`RunUpOptions::check`] and of [`synthesise`](crate::synthesise); `Unsupported` for a cyclic model, an unbalance or a
@@ -185,7 +186,8 @@ pub fn run_up(branch: &Branch, model: &Model, options: &RunUpOptions, interrupt:
     Ok(found)
 }
 
-/// Forces and damping on a mode, and its highest steady resonance under them, compared with the computed one; none without a resonance.
+/// Forces and damping on a mode, and its highest steady resonance under them, compared with the computed one; `None`
+/// in its place without a resonance.
 ///
 /// # Errors
 /// Those of [`synthesise`](crate::synthesise); `Argument` for a mode without points.

@@ -24,38 +24,39 @@ const IDENTIFIED_TO: f64 = 1e-13;
 /// thousand is beyond 4.
 const CONTRADICTION: f64 = 4.0;
 
-/// Measured modes of a wheel.
+/// Measured modes of a wheel, with their standard deviations.
 #[derive(Clone, Copy, Debug)]
 pub struct MeasuredModes<'a> {
-    /// Degrees of freedom of a sector that were measured on every one.
+    /// Degrees of freedom of a sector that were measured on every sector.
     pub points: &'a [usize],
-    /// Angular frequencies.
+    /// Angular frequencies of the measured modes.
     pub omega: &'a [f64],
-    /// Their standard deviations.
+    /// Standard deviations of the angular frequencies.
     pub sigma_omega: &'a [f64],
     /// Shapes of any scale and phase: mode after mode, sector after sector, point after point.
     pub shapes: &'a [Complex64],
-    /// Standard deviations of the parts of a number of each shape, in its scale.
+    /// Standard deviation of the real and of the imaginary part of each shape's numbers, in the scale of the shape.
     pub sigma_shape: &'a [f64],
 }
 
-/// A pattern from measured modes.
+/// A pattern of mistuning that was found from measured modes.
 #[derive(Clone, Debug)]
 pub struct IdentifiedPattern {
-    /// δ of each sector.
+    /// Deviation δ of each sector.
     pub delta: Vec<f64>,
-    /// Covariance of the δ.
+    /// Covariance of the δ, N × N numbers.
     pub covariance: Vec<f64>,
-    /// Sum of the squares of the residuals over their standard deviations, and the number of data less that of unknowns.
+    /// Sum of squares of the residuals over their standard deviations.
     pub chi2: f64,
-    /// See `chi2`.
+    /// Degrees of freedom of `chi2`: number of data minus number of unknowns.
     pub degrees: usize,
-    /// Steps that were needed.
+    /// Number of steps that were needed.
     pub steps: usize,
 }
 
-/// Finds the pattern of greatest likelihood of a wheel whose modes were measured, and its covariance. Both frequencies and shapes have
-/// noise. `families` tuned modes of each nodal diameter are the basis of the modes: the families that were measured, and some more.
+/// Finds the most likely pattern of a mistuned wheel from measured modes, and its covariance. Both frequencies and
+/// shapes have noise. `families` tuned modes of each nodal diameter are the basis of the modes: the families that
+/// were measured, and some more.
 ///
 /// # Errors
 /// `Unsupported` for a plain model, gyroscopic forces, complex matrices, and other quantities than stiffness, frequency and mass;
@@ -145,7 +146,7 @@ pub fn wheel_identify(
     last.refused((points * modes.len()).saturating_sub(sectors))
 }
 
-/// Measures of the last step of an identification that does not end.
+/// Last step of an identification that does not converge.
 #[derive(Default)]
 struct Last {
     chi2: f64,
@@ -217,7 +218,7 @@ fn check(cyclic: &Model, measured: &MeasuredModes<'_>, families: usize) -> Resul
     Ok(())
 }
 
-/// The matrices over the tuned modes, frequencies in a unit.
+/// Matrices of the wheel over its tuned modes, with frequencies over `unit`.
 fn of_family(
     family: &TunedFamily<'_>,
     what: &Mistuning<'_>,
@@ -264,8 +265,8 @@ fn of_family(
     })
 }
 
-/// A shape turned by the phase that makes its real part the largest, of length 1, and its length before. Modes without gyroscopic
-/// forces and damping are real: the imaginary part that is left is noise.
+/// A shape with the phase that makes its real part largest, scaled to length 1; and its former length. Modes without
+/// gyroscopic forces and damping are real, so that the remaining imaginary part is noise.
 fn real_shape(shape: &[Complex64], points: usize, k: usize) -> Result<(Vec<f64>, f64)> {
     let square: Complex64 = shape.iter().map(|z| z * z).sum();
     let size = shape.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
@@ -321,7 +322,7 @@ fn inverse(normal: &[f64], n: usize, interrupt: &Interrupt<'_>) -> Result<Vec<f6
     Ok(columns)
 }
 
-/// Frequencies from factors of the stiffness, (1 + δ)² = 1 + κ.
+/// Turns factors on the stiffness into changes of frequency, (1 + δ)² = 1 + κ.
 fn in_quantity(mut found: IdentifiedPattern, what: &Mistuning<'_>) -> Result<IdentifiedPattern> {
     if !matches!(what, Mistuning::Blade(BladeProperty::Frequency, _)) {
         return Ok(found);

@@ -5,6 +5,7 @@ use crate::error::{Error, Result, Status, fail, try_push};
 use crate::hooks::Hooks;
 use crate::model::Model;
 use crate::model::wheels::sector_digest::SectorUse;
+use crate::options::Range;
 use crate::options::{ForcedOptions, Response, SolverOptions};
 use crate::results::{Branch, ResponseSeries, Special};
 use crate::studies::range_ends::at_ends;
@@ -12,18 +13,18 @@ use core::fmt::Display;
 
 const CONTEXT: &str = "the peaks of a wheel";
 
-/// Highest peak of a blade.
+/// Highest peak of one blade.
 #[derive(Clone, Copy, Debug)]
 pub struct BladePeak {
-    /// The response; NaN where it has no peak within the range.
+    /// Value of the response at the peak; NaN where the response has no peak within the range.
     pub amplitude: f64,
-    /// Its angular frequency.
+    /// Angular frequency of the peak.
     pub omega: f64,
-    /// Its estimated relative error; NaN where no tolerance asked for it.
+    /// Estimated relative error of the peak; NaN without a tolerance, which requests it.
     pub error: f64,
-    /// Its number among the stored points of the branch.
+    /// Index of the peak among the stored points of the branch.
     pub point: Option<usize>,
-    /// The larger response at the two ends of the curve, and its angular frequency.
+    /// The larger value of the response at the two ends of the curve, and its angular frequency.
     pub end: (f64, f64),
 }
 
@@ -36,7 +37,8 @@ impl BladePeak {
         end: (f64::NAN, f64::NAN),
     };
 
-    /// Whether the response is larger at an end of the curve than at each peak: the highest peak lies beyond.
+    /// Whether the response is larger at an end of the curve than at each peak, so that the highest peak lies beyond
+    /// the range.
     #[must_use]
     pub fn is_beyond(&self) -> bool {
         self.end.0 > if self.amplitude.is_nan() { 0.0 } else { self.amplitude }
@@ -64,19 +66,19 @@ impl BladePeak {
 pub struct WheelPeaks {
     /// Peaks of the blades, in the order of the sectors.
     pub blades: Vec<BladePeak>,
-    /// Blade with the highest one; `None` without any peak.
+    /// Index of the blade with the highest peak; `None` without any peak.
     pub largest: Option<usize>,
     /// Peak of the tuned wheel.
     pub tuned: BladePeak,
-    /// The response of the wheel, whose response number s is that of blade s.
+    /// The response of the wheel, whose response number s belongs to blade s.
     pub branch: Branch,
-    /// First and last angular frequency that were asked for.
-    pub range: (f64, f64),
+    /// First and last angular frequency that were requested.
+    pub range: Range,
 }
 
 impl WheelPeaks {
-    /// Amplification factor: the highest peak over that of the tuned wheel; NaN without one of them, or where one lies beyond an end of
-    /// the range.
+    /// Amplification factor: highest peak of the blades over that of the tuned wheel; NaN without one of them, or
+    /// where one lies beyond an end of the range.
     #[must_use]
     pub fn amplification(&self) -> f64 {
         if self.beyond().is_some() || self.tuned.is_beyond() {
@@ -86,8 +88,8 @@ impl WheelPeaks {
             .map_or(f64::NAN, |blade| self.blades[blade].amplitude / self.tuned.amplitude)
     }
 
-    /// The blade that has the largest response at an end of the range, where that is larger than the highest peak of all blades: the
-    /// highest peak of the wheel lies beyond.
+    /// Blade with the largest response at an end of the range, if this exceeds the highest peak of all blades: the
+    /// highest peak of the wheel lies beyond the range.
     #[must_use]
     pub fn beyond(&self) -> Option<usize> {
         let with_end = (0..self.blades.len()).filter(|&i| self.blades[i].end.0 > 0.0);
@@ -96,7 +98,8 @@ impl WheelPeaks {
         (self.blades[blade].end.0 > highest).then_some(blade)
     }
 
-    /// `StoppedNoPeak` with the reason where the highest peak of the wheel, or of the tuned one, lies beyond an end of the range.
+    /// The error `StoppedNoPeak` with its reason, if the highest peak of the wheel or of the tuned wheel lies beyond
+    /// an end of the range.
     #[must_use]
     pub fn outside(&self) -> Option<Error> {
         let said = |of: &dyn Display, (amplitude, omega): (f64, f64)| {
@@ -105,7 +108,7 @@ impl WheelPeaks {
                 format_args!(
                     "{of} is at {amplitude:.6e} at omega = {omega}, an end of the range {} .. {}, above its peaks there: the highest peak \
                      lies beyond; widen the range",
-                    self.range.0, self.range.1
+                    self.range.start, self.range.stop
                 ),
             )
         };
@@ -192,7 +195,7 @@ pub fn wheel_peaks(
             .responses()
             .first()
             .map_or(BladePeak::NONE, |series| BladePeak::of(&tuned, series)),
-        range: (options.omega_start, options.omega_stop),
+        range: Range::new(options.omega_start, options.omega_stop),
         blades,
         branch,
     })

@@ -26,32 +26,32 @@ const CONTEXT: &str = "the contacts";
 /// Kind: block.
 pub(super) const OF_ONE_SECTOR: u64 = 100;
 
-/// One contact of one sector.
+/// A contact of one sector that is not a linear spring.
 #[derive(Clone, Debug)]
 pub(crate) struct Element {
-    /// One row for each relative motion.
+    /// Rows of its relative motions, one for each.
     pub rows: Vec<Row>,
-    /// The same relative motions over the sectors of the whole wheel.
+    /// Relative motions over the sectors of the whole wheel.
     pub motions: Vec<SectorMotion>,
-    /// The law, its constants in the caller's units.
+    /// The law of the contact, with its constants in the caller's units.
     law: TimePart,
-    /// Number of the contact, equal for its copies in all sectors.
+    /// Index of the contact, equal for its copies in all sectors.
     pub family: usize,
-    /// Sector of its side a.
+    /// Sector in which side a of the contact lies.
     pub sector: usize,
 }
 
 /// A linear spring between two degrees of freedom.
 pub(crate) struct Spring {
     pub row: Row,
-    /// The same relative motion over the sectors of the whole wheel.
+    /// Relative motion over the sectors of the whole wheel.
     pub motion: SectorMotion,
-    /// Sector of its side a.
+    /// Sector in which side a of the spring lies.
     pub sector: usize,
     pub stiffness: f64,
 }
 
-/// Row of a relative motion r·x: entries (degree of freedom of the unrolled structure, coefficient).
+/// Row of a relative motion r·x: pairs (degree of freedom of the unrolled structure, coefficient).
 pub(crate) type Row = [Option<(usize, f64)>; MOTION_TERMS];
 
 impl Spring {
@@ -75,7 +75,7 @@ fn row(structure: &Structure, motion: &SectorMotion, s: usize) -> Row {
     })
 }
 
-/// r·x
+/// Relative motion r·x that the row reads.
 pub(super) fn along(row: &Row, x: &[f64]) -> f64 {
     row.iter().flatten().map(|&(dof, a)| a * x[dof]).sum()
 }
@@ -126,7 +126,7 @@ pub(super) fn unroll(
 }
 
 impl Element {
-    /// The law of an element that is integrated numerically.
+    /// The law of the element, if it is integrated numerically.
     pub fn smooth(&self) -> Option<&dyn Memoryless> {
         match &self.law {
             TimePart::Smooth(law) => match law.form() {
@@ -137,7 +137,7 @@ impl Element {
         }
     }
 
-    /// The law of an element that is linear between events.
+    /// The law of the element, if it is linear between events.
     pub fn events(&self) -> Option<&dyn EventLaw> {
         match &self.law {
             TimePart::Events(law) => Some(&**law),
@@ -145,12 +145,12 @@ impl Element {
         }
     }
 
-    /// The slider of an element with memory, part of the state.
+    /// The slider law of the element, if it has one; its slider is a part of the state.
     pub fn slider(&self) -> Option<&dyn SliderLaw> {
         self.events()?.slider()
     }
 
-    /// The first two relative motions of displacements, or velocities.
+    /// The first two relative motions of the element, for displacements or velocities x.
     pub fn relative(&self, x: &[f64]) -> [f64; 2] {
         let mut motion = [0.0; 2];
         for (motion, row) in motion.iter_mut().zip(&self.rows) {
@@ -159,7 +159,7 @@ impl Element {
         motion
     }
 
-    /// The relative motions and velocities.
+    /// Relative motions and velocities of the element.
     pub fn instant(&self, x: &[f64], v: &[f64]) -> Instant {
         Instant {
             motion: self.relative(x),
@@ -167,7 +167,7 @@ impl Element {
         }
     }
 
-    /// f += s·Rᵀ g of forces g along the first two relative motions
+    /// f ← f + s·Rᵀ g, where g are forces along the first two relative motions.
     pub fn push(&self, s: f64, g: [f64; 2], f: &mut [f64]) {
         for (row, g) in self.rows.iter().zip(g) {
             if g != 0.0 {

@@ -37,7 +37,7 @@ const SIMULTANEOUS: f64 = 1e-13;
 /// Kind: tuned; measured on: not recorded.
 const GRAZING_SPEED: f64 = 3e-6;
 
-/// Displacements, velocities and the stretches of the sliders' springs.
+/// State of the structure: displacements, velocities and stretches of the sliders' springs.
 #[derive(Clone, Debug)]
 pub(crate) struct State {
     pub x: Vec<f64>,
@@ -46,7 +46,7 @@ pub(crate) struct State {
 }
 
 impl State {
-    /// The state at rest.
+    /// The state without any motion or stretch.
     pub fn rest(system: &System<'_>) -> Result<Self> {
         let mut e = try_vec(system.elements.len(), 0.0, CONTEXT)?;
         for (e, element) in e.iter_mut().zip(&system.elements) {
@@ -85,7 +85,7 @@ impl State {
         }
     }
 
-    /// Copies the values of another.
+    /// Copies the values of another state.
     pub fn set(&mut self, other: &Self) {
         self.x.copy_from_slice(&other.x);
         self.v.copy_from_slice(&other.v);
@@ -104,11 +104,11 @@ impl State {
         if gap == 0.0 { 0.0 } else { (gap / size).sqrt() }
     }
 
-    /// The first half of the sectors of `system`; they decide about the others in [`Self::unfold`].
+    /// The state of the first half of the sectors of `system`; the others follow by [`Self::unfold`].
     pub fn fold(&self, system: &System<'_>) -> Result<Self> {
         let mut half = self.try_clone()?;
         for (values, block) in [(&mut half.x, system.ndof), (&mut half.v, system.ndof), (&mut half.e, 1)] {
-            let group = block * system.sectors;
+            let group = block * system.wave.sectors;
             let mut kept = 0;
             for from in 0..values.len() {
                 if from % group < group / 2 {
@@ -121,7 +121,7 @@ impl State {
         Ok(half)
     }
 
-    /// Sets the sectors of `system` to those of the first half, and to their opposite in the second one.
+    /// Sets the first half of the sectors of `system` to those of `half`, and the second half to their opposite.
     pub fn unfold(&mut self, half: &Self, system: &System<'_>) {
         let block = system.ndof;
         for (all, half, block) in [
@@ -129,7 +129,7 @@ impl State {
             (&mut self.v, &half.v, block),
             (&mut self.e, &half.e, 1),
         ] {
-            let part = block * system.sectors / 2;
+            let part = block * system.wave.sectors / 2;
             for (all, half) in all.chunks_exact_mut(2 * part).zip(half.chunks_exact(part)) {
                 let (first, second) = all.split_at_mut(part);
                 first.copy_from_slice(half);
@@ -140,7 +140,7 @@ impl State {
         }
     }
 
-    /// self += sign·other
+    /// self ← self + sign·other.
     pub fn add(&mut self, sign: f64, other: &Self) {
         for (own, others) in [
             (&mut self.x, &other.x),
@@ -153,7 +153,7 @@ impl State {
         }
     }
 
-    /// Number of its entries.
+    /// Number of entries of the state.
     pub fn len(&self) -> usize {
         self.x.len() + self.v.len() + self.e.len()
     }
@@ -162,7 +162,7 @@ impl State {
 /// Summary of a lapse.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct LapseSummary {
-    /// Changes of piece.
+    /// Number of changes of piece.
     pub events: usize,
     /// Largest displacement and velocity at the ends of the steps.
     pub largest: (f64, f64),
@@ -176,7 +176,7 @@ impl LapseSummary {
     }
 }
 
-/// Observers of a lapse.
+/// Observers of a lapse; `None` for those that are not used.
 #[derive(Default)]
 pub(crate) struct Observers<'a, 'v> {
     /// Harmonics and samples of the motion.
@@ -198,17 +198,17 @@ pub(crate) struct EventLoop {
     polynomial: StepPolynomial,
     modes: Vec<Mode>,
     pieces: Vec<TimePiece>,
-    /// Zeros by construction of the margins at the begin of the step.
+    /// Margins of each contact that are zero by construction at the beginning of the step.
     zeros: Vec<Zeros>,
     /// Next event of each contact within the step: (θ, margin).
     falls: Vec<Option<(f64, usize)>>,
-    /// Modes of the sliders whose initial place follows from the motion.
+    /// For each slider whose initial place follows from the motion, its mode; else `None`.
     dependent: Vec<Option<Mode>>,
     /// Sliders that have moved in some lapse since [`Self::clear_moved`].
     pub moved: Vec<bool>,
-    /// Directions in which they have moved since then: up, down.
+    /// Directions in which each slider has moved since then: up, down.
     pub directions: Vec<[bool; 2]>,
-    /// Steps of the last lapse, and the most that one may take.
+    /// Number of steps of the last lapse; and the most that a lapse may take.
     pub steps: usize,
     pub most_steps: usize,
     /// Displacement and velocity beyond which a lapse is left.
@@ -240,7 +240,7 @@ impl EventLoop {
         })
     }
 
-    /// Lets lapses take as many steps, and motions grow as large, as any may.
+    /// Removes the bounds on steps and motions of a lapse, except the general ones.
     pub fn without_bounds(&mut self) {
         self.most_steps = EVENT_LOOP_MOST_STEPS;
         self.bounds = (f64::INFINITY, f64::INFINITY);
@@ -252,7 +252,7 @@ impl EventLoop {
         self.directions.fill([false; 2]);
     }
 
-    /// Notes that the slider of an element moves, if it does. One that opens is free in both directions.
+    /// Notes that the slider of an element moves, if it does. A contact that opens frees it in both directions.
     fn note(&mut self, i: usize) {
         let mode = self.modes[i];
         self.moved[i] |= mode.moves_slider();
@@ -263,7 +263,7 @@ impl EventLoop {
         }
     }
 
-    /// Integrates a state from time 0 over one lapse, and with it what the observers request.
+    /// Integrates a state from time 0 over one lapse, together with the data that the observers need.
     pub fn run(
         &mut self,
         system: &mut System<'_>,
@@ -274,7 +274,7 @@ impl EventLoop {
         self.run_for(system, state, end, observers)
     }
 
-    /// The same over a given time.
+    /// Integrates a state from time 0 up to the time `end`, together with the data that the observers need.
     pub fn run_for(
         &mut self,
         system: &mut System<'_>,
@@ -386,8 +386,8 @@ impl EventLoop {
         }
     }
 
-    /// The first θ at which a contact leaves its piece, 1 if none does; `falls` receives the contacts that leave
-    /// theirs by then.
+    /// The first share θ of the step at which a contact leaves its piece, 1 if none does; `falls` receives the
+    /// contacts that do so up to this share.
     fn next_event(&mut self, system: &System<'_>, state: &State) -> f64 {
         let mut first = f64::INFINITY;
         for (i, e) in system.elements.iter().enumerate() {
@@ -420,7 +420,7 @@ impl EventLoop {
         first.min(1.0)
     }
 
-    /// Switches the contacts whose piece has ended to the next one. Returns their number.
+    /// Switches the contacts whose piece has ended to their next piece. Returns the number of these contacts.
     fn switch<'v>(
         &mut self,
         system: &System<'_>,
@@ -451,7 +451,7 @@ impl EventLoop {
         Ok(happened)
     }
 
-    /// The interval up to θ of the last step.
+    /// The part of the last step up to θ, for the observers.
     fn interval(&self, theta: f64) -> Interval<'_> {
         let step = self.polynomial.length;
         let collocation = match &self.stepper {
@@ -499,8 +499,8 @@ impl EventLoop {
     }
 }
 
-/// The event that is touched at a change of mode, if any. `speeds`: of a slip and of a landing, against which slow ones are
-/// measured.
+/// The event that is touched without being passed at a change of mode, if any. `speeds`: a speed of slip and a speed
+/// of landing, against which slow ones are measured.
 fn touched(e: &Element, (before, after): (Mode, Mode), rate: [f64; 2], speeds: (f64, f64)) -> Option<Grazing> {
     let slider = e.slider()?;
     match (before, after) {

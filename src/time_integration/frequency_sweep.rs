@@ -18,44 +18,45 @@ use std::f64::consts::TAU;
 
 const CONTEXT: &str = "a sweep in time";
 
-/// One turn of a sweep.
+/// Data of one turn of the forces in a sweep.
 #[derive(Clone, Copy, Debug)]
 pub struct SweepTurn {
-    /// Time at its begin.
+    /// Time at the beginning of the turn.
     pub time: f64,
-    /// Angular frequency at its begin.
+    /// Angular frequency of the forces at the beginning of the turn.
     pub omega: f64,
-    /// Largest displacement within it.
+    /// Largest displacement within the turn.
     pub amplitude: f64,
 }
 
-/// The motion of a sweep.
+/// Displacement over a sweep of the frequency.
 #[derive(Clone, Debug)]
 pub struct FrequencySweep {
-    /// `Ok` or `StoppedByCaller`, with the turns so far.
+    /// Status: `Ok`, or `StoppedByCaller` with the turns so far.
     pub status: Status,
-    /// Turns.
+    /// Turns of the forces, one after the other.
     pub turns: Vec<SweepTurn>,
     /// Largest displacement of the sweep.
     pub largest: f64,
-    /// Angular frequency at that time.
+    /// Angular frequency of the forces at the largest displacement.
     pub largest_omega: f64,
-    /// That time, from the begin of the sweep.
+    /// Time of the largest displacement, from the beginning of the sweep.
     pub largest_time: f64,
-    /// Changes of contacts.
+    /// Number of changes of contacts between their states.
     pub events: usize,
-    /// Place of each slider that has not moved in both directions between the periodic motion at the first frequency and the turn of the
-    /// largest displacement: it depends on where the search for that motion has left it. None for others.
-    pub(crate) held: Vec<Option<f64>>,
-    /// Contact and place of each slider that does not move in both directions in the periodic motion at the first frequency. None for
+    /// Place of each slider that has not moved in both directions between the periodic motion at the first frequency
+    /// and the turn of the largest displacement, so that it depends on the search for that motion; `None` for the
     /// others.
+    pub(crate) held: Vec<Option<f64>>,
+    /// Contact and place of each slider that does not move in both directions in the periodic motion at the first
+    /// frequency; `None` for the others.
     pub(crate) resting: Vec<Option<(usize, f64)>>,
 }
 
-/// The work of [`crate::analysis::sweep`], with options that are checked.
+/// Carries out [`crate::analysis::sweep`], with options that have been checked.
 ///
 /// # Errors
-/// As there.
+/// As [`crate::analysis::sweep`].
 pub fn run_through(model: &Model, options: &SweepOptions<'_>, hooks: &mut Hooks<'_>) -> Result<FrequencySweep> {
     let structure = model.structure();
     if structure.sectors() > 1 {
@@ -146,7 +147,7 @@ fn find_resting(
 }
 
 struct Walk<'a> {
-    /// Values of the loads at phase 0.
+    /// Complex values of the loads at phase 0.
     bases: Vec<Complex64>,
     down: bool,
     options: &'a SweepOptions<'a>,

@@ -32,17 +32,17 @@ pub(super) fn nodes<const N: usize>() -> ([f64; N], [f64; N]) {
     (c, b)
 }
 
-/// Collocation at Gauss's nodes.
+/// Tables of collocation at Gauss's nodes.
 pub(crate) struct GaussTables {
-    /// Nodes cᵢ.
+    /// Nodes cᵢ in [0, 1].
     pub nodes: [f64; GAUSS_STAGES],
-    /// aᵢⱼ, integrals of the Lagrange polynomials up to the nodes.
+    /// Weights aᵢⱼ, integrals of the Lagrange polynomials up to the nodes.
     pub once: [[f64; GAUSS_STAGES]; GAUSS_STAGES],
-    /// Σₖ aᵢₖ aₖⱼ
+    /// Weights Σₖ aᵢₖ aₖⱼ of double integrals.
     pub twice: [[f64; GAUSS_STAGES]; GAUSS_STAGES],
     /// Matrix from values at the nodes to the coefficients of the shifted Legendre polynomials.
     pub legendre: [[f64; GAUSS_STAGES]; GAUSS_STAGES],
-    /// The coefficients of θᵐ in the j-th of them: (−1)^{j+m} C(j,m) C(j+m,m).
+    /// Coefficient of θᵐ in the j-th shifted Legendre polynomial: (−1)^{j+m} C(j,m) C(j+m,m).
     pub powers: [[f64; GAUSS_STAGES]; GAUSS_STAGES],
 }
 

@@ -43,7 +43,7 @@ struct RequestedTime {
 struct RequestedTimes {
     count: usize,
     sectors: usize,
-    /// g
+    /// Number g of samples at each time within a lapse.
     together: usize,
     /// Inverse of sectors/g modulo count/g.
     inverse: usize,
@@ -61,7 +61,7 @@ impl RequestedTimes {
         }
     }
 
-    /// The i-th one in the order of time.
+    /// The i-th requested time, in the order of time.
     fn get(&self, system: (f64, usize), i: usize) -> Option<RequestedTime> {
         if i >= self.count {
             return None;
@@ -97,12 +97,10 @@ pub(crate) struct HarmonicAnalysis {
     degrees: DegreeMap,
     sectors: usize,
     omega: f64,
-    /// ∫ x e^{−ihωt} dt of all degrees of freedom, harmonic after harmonic.
+    /// Integrals ∫ x e^{−ihωt} dt of all degrees of freedom, harmonic after harmonic.
     integrals: Vec<Complex64>,
     nodes: ([f64; HARMONIC_ANALYSIS_POINTS], [f64; HARMONIC_ANALYSIS_POINTS]),
-    requested: RequestedTimes,
-    /// Number of requested times that are done.
-    next: usize,
+    times: Times,
     follower: usize,
     /// Motion of sector 0 at each sample.
     samples: Vec<f64>,
@@ -111,19 +109,28 @@ pub(crate) struct HarmonicAnalysis {
     lapse: f64,
 }
 
+/// Requested times.
+pub(crate) struct Times {
+    requested: RequestedTimes,
+    /// Number of requested times that are done.
+    done: usize,
+}
+
 impl HarmonicAnalysis {
     /// Memory for harmonics 0 ..= `harmonics` and for `samples` times of the period.
     pub fn new(system: &System<'_>, harmonics: usize, samples: usize) -> Result<Self> {
         let n = system.order();
         Ok(Self {
             ndof: system.ndof,
-            sectors: system.sectors,
+            sectors: system.wave.sectors,
             omega: system.omega,
             integrals: try_vec((harmonics + 1).saturating_mul(n), Complex64::ZERO, CONTEXT)?,
             nodes: nodes(),
-            requested: RequestedTimes::new(samples, system.sectors),
-            next: 0,
-            follower: system.follower,
+            times: Times {
+                requested: RequestedTimes::new(samples, system.wave.sectors),
+                done: 0,
+            },
+            follower: system.wave.follower,
             degrees: system.degrees.clone(),
             samples: try_vec(
                 samples.saturating_mul(system.degrees.given()),
@@ -136,7 +143,7 @@ impl HarmonicAnalysis {
         })
     }
 
-    /// Adds the part of a step up to θ.
+    /// Adds the part of a step up to the share θ.
     pub fn add(&mut self, step: &StepPolynomial, theta: f64, interrupt: &Interrupt<'_>) -> Result<()> {
         if theta <= 0.0 {
             return Ok(());
@@ -163,8 +170,8 @@ impl HarmonicAnalysis {
             }
         }
         let end = step.begin + length;
-        while let Some(requested) = self.requested.get((self.lapse, self.follower), self.next) {
-            if self.next.is_multiple_of(HARMONIC_ANALYSIS_BETWEEN_CHECKS) {
+        while let Some(requested) = self.times.requested.get((self.lapse, self.follower), self.times.done) {
+            if self.times.done.is_multiple_of(HARMONIC_ANALYSIS_BETWEEN_CHECKS) {
                 interrupt.check_before((HARMONIC_ANALYSIS_BETWEEN_CHECKS * n * DEGREE) as u64)?;
             }
             // Round-off may leave the last times of a lapse just beyond its last step.
@@ -180,7 +187,7 @@ impl HarmonicAnalysis {
                 sector(requested.sector + 1),
                 &mut self.samples[requested.sample * given..][..given],
             );
-            self.next += 1;
+            self.times.done += 1;
         }
         Ok(())
     }
@@ -195,7 +202,8 @@ impl HarmonicAnalysis {
         self.finish(system).map(|(harmonics, _)| harmonics)
     }
 
-    /// The same with the samples, time by time.
+    /// The harmonics of all degrees of freedom in the caller's numbering, harmonic by harmonic; and the samples, time
+    /// by time.
     pub fn finish_all(self, system: &System<'_>, model: &Model) -> Result<(Vec<Complex64>, Vec<f64>)> {
         let given = model.ndof();
         let (independent, samples) = self.finish(system)?;
@@ -240,15 +248,15 @@ impl HarmonicAnalysis {
 
 /// The sector whose present motion sector 0 repeats `parts` lapses later.
 fn before(system: &System<'_>, parts: usize) -> usize {
-    back(parts * system.follower, system.sectors)
+    back(parts * system.wave.follower, system.wave.sectors)
 }
 
-/// The sector so many sectors before sector 0.
+/// The sector `count` sectors before sector 0.
 fn back(count: usize, sectors: usize) -> usize {
     (sectors - count % sectors) % sectors
 }
 
-/// ∫ θᵏ e^{−iαθ} dθ from 0 to 1, k = 0 ..= degree.
+/// Moments ∫ θᵏ e^{−iαθ} dθ from 0 to 1, k = 0 ..= degree.
 fn moments(
     (c, b): &([f64; HARMONIC_ANALYSIS_POINTS], [f64; HARMONIC_ANALYSIS_POINTS]),
     angle: f64,

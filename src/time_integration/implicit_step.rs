@@ -19,7 +19,7 @@ use crate::time_integration::unrolled_structure::System;
 /// Kind: cap.
 const IMPLICIT_STEP_MOST_ITERATIONS: usize = 30;
 
-/// Memory of the steps.
+/// Implicit steps, with their memory.
 pub(super) struct Implicit {
     tables: GaussTables,
     lu: Lu<f64>,
@@ -111,7 +111,7 @@ impl Implicit {
         }
     }
 
-    /// The matrix δᵢⱼM + h aᵢⱼCᵢ + h² (A²)ᵢⱼKᵢ, with the current tangents.
+    /// Factors the matrix δᵢⱼM + h aᵢⱼCᵢ + h² (A²)ᵢⱼKᵢ, with the current tangents.
     fn factor(&mut self, system: &System<'_>, pieces: &[TimePiece], h: f64) -> Result<()> {
         let n = self.x.len();
         let all = n * GAUSS_STAGES;
@@ -121,14 +121,15 @@ impl Implicit {
         for i in 0..GAUSS_STAGES {
             system.interrupt.check()?;
             system
+                .matrices
                 .inertia
                 .each(|r, c, m| matrix[(i * n + c) * all + i * n + r] += m);
             for j in 0..GAUSS_STAGES {
                 system.interrupt.check()?;
                 let (once, twice) = (h * tables.once[i][j], h * h * tables.twice[i][j]);
                 let mut add = |r: usize, c: usize, value: f64| matrix[(j * n + c) * all + i * n + r] += value;
-                system.damping.each(|r, c, d| add(r, c, once * d));
-                system.stiffness.each(|r, c, k| add(r, c, twice * k));
+                system.matrices.damping.each(|r, c, d| add(r, c, once * d));
+                system.matrices.stiffness.each(|r, c, k| add(r, c, twice * k));
                 for (element, piece) in system.elements.iter().zip(pieces) {
                     for (to, slopes) in element.rows.iter().zip(&piece.slope) {
                         for (from, slope) in element.rows.iter().zip(slopes).filter(|(_, slope)| **slope != 0.0) {
@@ -147,7 +148,8 @@ impl Implicit {
         self.lu.factor(system.interrupt)
     }
 
-    /// Newton's method for the accelerations, with the tangents at the start of the step; `false`: it failed.
+    /// Solves for the accelerations by Newton's method, with the tangents at the start of the step; `false` if it
+    /// fails.
     fn collocate(
         &mut self,
         system: &System<'_>,
@@ -187,7 +189,7 @@ impl Implicit {
         Ok(false)
     }
 
-    /// M a + C v + K x + f − F at the nodes, and the tangents there.
+    /// Evaluates M a + C v + K x + f − F at the nodes, and the tangents of smooth laws at them.
     fn evaluate(
         &mut self,
         system: &System<'_>,
@@ -218,10 +220,11 @@ impl Implicit {
                 *r = -*r;
             }
             system
+                .matrices
                 .inertia
                 .multiply_add(1.0, &self.accelerations[i * n..(i + 1) * n], r);
-            system.damping.multiply_add(1.0, &self.v, r);
-            system.stiffness.multiply_add(1.0, &self.x, r);
+            system.matrices.damping.multiply_add(1.0, &self.v, r);
+            system.matrices.stiffness.multiply_add(1.0, &self.x, r);
             for (element, piece) in system.elements.iter().zip(pieces) {
                 element.push(1.0, piece.at(element.relative(&self.x)), r);
             }
@@ -275,7 +278,7 @@ impl Implicit {
         of(last * h / order, self.largest.1).max(of(last * (h / order).powi(2), self.largest.0))
     }
 
-    /// The nodes of the last step, and the tangents of smooth laws there.
+    /// The nodes of the last step, and the tangents of smooth laws at them.
     pub fn nodes(&self) -> (&GaussTables, &Smooth) {
         (&self.tables, &self.smooth)
     }

@@ -18,7 +18,8 @@ const INITIAL_STATE_POINTS: usize = 1024;
 
 const CONTEXT: &str = "the start of the motion in time";
 
-/// The state at time 0 of a periodic motion; each slider has its place after two periods of the motion from rest.
+/// The state at time 0 of a periodic motion. Each slider has the place that it reaches after two periods of the
+/// motion from its unloaded place.
 pub(crate) fn state_of(model: &Model, system: &System<'_>, harmonics: &[Complex64]) -> Result<State> {
     let (given, ndof) = (model.ndof(), system.ndof);
     let count = harmonics.len() / given;
@@ -29,12 +30,12 @@ pub(crate) fn state_of(model: &Model, system: &System<'_>, harmonics: &[Complex6
     state_of_sector(model, system, &sector)
 }
 
-/// The same from the harmonics of the independent degrees of freedom of a sector.
+/// The state at time 0 as `state_of` gives it, from the harmonics of the independent degrees of freedom of a sector.
 pub(crate) fn state_of_sector(model: &Model, system: &System<'_>, sector: &[Complex64]) -> Result<State> {
     let mut state = State::rest(system)?;
     let ndof = system.ndof;
     for (h, own) in sector.chunks_exact(ndof).enumerate() {
-        for s in 0..system.sectors {
+        for s in 0..system.wave.sectors {
             let phase = model.structure().phase(h, s as i64);
             for (dof, x) in own.iter().enumerate() {
                 let x = moved(x, phase, h);
@@ -47,7 +48,7 @@ pub(crate) fn state_of_sector(model: &Model, system: &System<'_>, sector: &[Comp
     Ok(state)
 }
 
-/// A coefficient in the sector with the given phase; means are real.
+/// A harmonic coefficient in the sector with the given phase; means are real.
 fn moved(x: &Complex64, phase: Complex64, h: usize) -> Complex64 {
     if h == 0 { x.re.into() } else { x * phase }
 }
@@ -86,7 +87,8 @@ fn place_sliders(model: &Model, system: &System<'_>, sector: &[Complex64], state
     Ok(())
 }
 
-/// A coefficient of the relative motion along a row of the unrolled structure, from those of one sector.
+/// A harmonic coefficient of the relative motion along a row of the unrolled structure, from the coefficients of one
+/// sector.
 fn along(model: &Model, row: &Row, (h, own): (usize, &[Complex64])) -> Complex64 {
     let terms = row.iter().flatten();
     terms

@@ -10,18 +10,18 @@ const LARGEST_MOTION_PARTS: usize = 8;
 /// Kind: cap.
 const LARGEST_MOTION_HALVINGS: usize = 60;
 
-/// The largest |x| of a degree of freedom.
+/// Search for the largest |x| of a degree of freedom.
 pub(crate) struct LargestMotion<'a> {
-    /// Its terms in the independent degrees of freedom.
+    /// Terms of the degree of freedom in the independent ones.
     terms: &'a [(usize, f64)],
-    /// |x|
+    /// Largest |x| so far.
     pub size: f64,
-    /// Time of it.
+    /// Time of the largest |x|.
     pub time: f64,
 }
 
 impl<'a> LargestMotion<'a> {
-    /// That of a degree of freedom, none so far.
+    /// A search without any step so far.
     pub fn new(terms: &'a [(usize, f64)]) -> Self {
         Self {
             terms,
@@ -30,7 +30,7 @@ impl<'a> LargestMotion<'a> {
         }
     }
 
-    /// Adds a step up to θ.
+    /// Adds a step up to the share θ.
     pub fn add(&mut self, step: &StepPolynomial, theta: f64) {
         let (terms, degree) = (self.terms, step.degree);
         let at = |s: f64| -> (f64, f64) {

@@ -25,11 +25,11 @@ const LINEAR_STEP_ROUNDS: usize = 100;
 /// Kind: rounding.
 const LINEAR_STEP_OVERFLOW: f64 = 1e200;
 
-/// Memory of the steps.
+/// Steps by Taylor series, with their memory.
 pub(super) struct Taylor {
     force: Vec<f64>,
     turning: Vec<Complex64>,
-    /// Its values for the term before.
+    /// Values of `turning` for the term before.
     before: Vec<Complex64>,
     /// Length of the step to try next.
     trial: f64,
@@ -96,7 +96,7 @@ impl Taylor {
         }
     }
 
-    /// x_{k+2} from x_k and x_{k+1}.
+    /// Computes the term x_{k+2} from x_k and x_{k+1}.
     fn next_term(
         &mut self,
         system: &mut System<'_>,
@@ -127,8 +127,8 @@ impl Taylor {
         let (low, high) = step.coefficients.split_at_mut((k + 1) * n);
         let this = &low[k * n..];
         let (next, new) = high.split_at_mut(n);
-        system.stiffness.multiply_add(-1.0, this, f);
-        system.damping.multiply_add(-((k + 1) as f64) / h, next, f);
+        system.matrices.stiffness.multiply_add(-1.0, this, f);
+        system.matrices.damping.multiply_add(-((k + 1) as f64) / h, next, f);
         for (e, piece) in system.elements.iter().zip(pieces) {
             let force = if k == 0 {
                 piece.force

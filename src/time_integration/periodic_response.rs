@@ -24,16 +24,16 @@ use std::f64::consts::TAU;
 /// A periodic response found by integration in time.
 #[derive(Clone, Debug)]
 pub struct TimeResponse {
-    /// `Ok`, or `StoppedByCaller`: then the harmonics and samples are those of a period that is not steady, or NaN if
-    /// the stop came from the cancel flag, after which no period is integrated.
+    /// Status: `Ok`, or `StoppedByCaller`. In the latter case harmonics and samples belong to a period that is not
+    /// steady; after a stop by the cancel flag no period is integrated, and they are NaN.
     pub status: Status,
-    /// T = 2π/ω
+    /// Period T = 2π/ω.
     pub period: f64,
     /// Largest change of a displacement, velocity or slider over one period, relative to the largest displacement or
     /// velocity. In a travelling wave the comparison is made after the part of the period after which another sector
     /// has the same motion. Infinite if the caller stopped before.
     pub residual: f64,
-    /// Periods that were integrated, rounded up.
+    /// Number of periods that were integrated, rounded up.
     pub periods: usize,
     /// Whether periods were marched: with shooting, if Newton's method did not converge from the start. Marching
     /// leaves an unstable solution.
@@ -41,10 +41,10 @@ pub struct TimeResponse {
     /// Changes of a contact between stick, slip, open and closed, or between the lines of a table, in one
     /// period, all contacts of one sector together.
     pub events: usize,
-    /// Degrees of freedom of one sector.
+    /// Number of degrees of freedom of one sector.
     pub ndof: usize,
-    /// Coefficients 0 ..= H of every degree of freedom (of sector 1), harmonic by harmonic, from the
-    /// motion itself.
+    /// Harmonic coefficients 0 ..= H of every degree of freedom (of sector 1), harmonic by harmonic, computed from
+    /// the motion itself.
     pub harmonics: Vec<Complex64>,
     /// Displacements at equidistant times from 0 on, time by time.
     pub samples: Vec<f64>,
@@ -62,8 +62,8 @@ pub fn solve(model: &Model, options: &TimeOptions<'_>, hooks: &mut Hooks<'_>) ->
     solve_disturbed(model, options, 0.0, hooks)
 }
 
-/// The same from a start that is disturbed by a share of its size, so that marching leaves an unstable motion even where the
-/// start has its symmetry.
+/// Integrates the response as `solve` does, from a start that is disturbed by a share of its size, so that marching
+/// leaves an unstable motion even where the start has its symmetry.
 ///
 /// # Errors
 /// As [`solve`].

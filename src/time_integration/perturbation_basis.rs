@@ -12,20 +12,21 @@ use crate::time_integration::variational_step::VariationalStep;
 
 const CONTEXT: &str = "the perturbations";
 
-/// Perturbations (δx, δv, δw), sliders w last, as columns.
+/// A basis of perturbations (δx, δv, δw), sliders w last, as columns.
 pub(crate) struct PerturbationBasis<'s, T> {
     interrupt: &'s Interrupt<'s>,
     equations: VariationalEquations<T>,
     step: VariationalStep<T>,
-    /// Column by column.
+    /// Perturbations, column after column.
     pub columns: Vec<T>,
-    /// Intervals with the same tangents through which the perturbations are still to be carried, as one of this length.
+    /// Total length of the intervals with equal tangents through which the perturbations are still to be carried.
     waiting: f64,
     pieces: Vec<TimePiece>,
 }
 
 impl<'s, T: Number> PerturbationBasis<'s, T> {
-    /// Memory for a full basis; `elements`: those of the structure in time; `smooth`: some law has no events.
+    /// Memory for a full basis; `elements`: number of elements of the structure in time; `smooth`: some law has no
+    /// events.
     ///
     /// # Errors
     /// `OutOfMemory`, `StoppedByCaller`.
@@ -47,7 +48,7 @@ impl<'s, T: Number> PerturbationBasis<'s, T> {
         })
     }
 
-    /// The identity, before a lapse.
+    /// Sets the perturbations to the identity, before a lapse.
     pub fn begin(&mut self) {
         let states = self.equations.states();
         self.columns.fill(T::NONE);
@@ -62,7 +63,7 @@ impl<'s, T: Number> PerturbationBasis<'s, T> {
         self.equations.states()
     }
 
-    /// Carries the perturbations through the intervals that wait.
+    /// Carries the perturbations through the intervals that are still waiting.
     fn catch_up(&mut self) -> Result<()> {
         let length = core::mem::replace(&mut self.waiting, 0.0);
         if length == 0.0 {
@@ -123,7 +124,7 @@ impl<T: Number> Variation for PerturbationBasis<'_, T> {
     fn graze(&mut self, _: usize, _: Grazing) {}
 }
 
-/// r·x
+/// Relative motion r·x that the row reads.
 fn along<T: Number>(row: &VariationalRow<T>, x: &[T]) -> T {
     row.iter().flatten().fold(T::NONE, |sum, &(dof, a)| sum + a * x[dof])
 }

@@ -8,11 +8,11 @@
 
 use crate::contact::time_piece::TimePiece;
 use crate::error::{Result, try_copy, try_push, try_vec};
+use crate::linalg::libraries::{Arch, Simd, WithSimd};
 use crate::time_integration::variational_equations::{
     Number, Numbers, VARIATIONAL_EQUATIONS_LANES, VariationalElement, VariationalEquations,
 };
 use num_complex::Complex64;
-use pulp::{Arch, Simd, WithSimd};
 
 const CONTEXT: &str = "a step of perturbations";
 
@@ -68,19 +68,19 @@ impl Rows {
     }
 }
 
-/// The matrices of an interval in real numbers.
+/// The matrices of an interval between events, in real numbers.
 pub(super) struct Products {
     arch: Arch,
-    /// Degrees of freedom, and real numbers of each.
+    /// Number of degrees of freedom; and real numbers for each.
     n: usize,
     parts: usize,
-    /// K of the structure alone.
+    /// Stiffness K of the structure alone: positions of its entries in the pattern, and values.
     base: Vec<(usize, f64)>,
     stiffness: Rows,
     damping: Rows,
-    /// 1/mᵢᵢ of a diagonal mass, with which all rows are multiplied.
+    /// Factors 1/mᵢᵢ of a diagonal mass, with which all rows are multiplied; `None` for another mass.
     inverse: Option<Vec<f64>>,
-    /// Forces (degree of freedom, slider, coefficient) of the places of the sliders.
+    /// Forces by the places of the sliders, as (degree of freedom, slider, coefficient).
     memory: Vec<(usize, usize, f64)>,
 }
 
@@ -137,12 +137,12 @@ impl Products {
         })
     }
 
-    /// Real numbers of a motion of all degrees of freedom.
+    /// Number of real numbers of a motion of all degrees of freedom.
     pub fn order(&self) -> usize {
         self.parts * self.n
     }
 
-    /// Sets the tangents of an interval; `sliders`: their number.
+    /// Sets the tangents of an interval; `sliders` is the number of sliders.
     pub fn set<T: Number>(
         &mut self,
         elements: &[VariationalElement<T>],
@@ -187,7 +187,7 @@ impl Products {
         Ok(())
     }
 
-    /// new = −(K + Rᴴ S R) this − factor·C next, by the mass where it is diagonal.
+    /// new ← −(K + Rᴴ S R) this − factor·C next, divided by the mass where that is diagonal.
     pub fn multiply(&self, this: &[Numbers], (factor, next): (f64, &[Numbers]), new: &mut [Numbers]) {
         self.arch.dispatch(Multiply {
             products: self,
@@ -198,7 +198,7 @@ impl Products {
         });
     }
 
-    /// new += the forces of the places of the sliders.
+    /// new ← new + the forces by the places of the sliders.
     pub fn add_memory(&self, sliders: &[Numbers], new: &mut [Numbers]) {
         for &(r, slider, c) in &self.memory {
             for (new, w) in new[r].iter_mut().zip(&sliders[slider]) {
@@ -207,8 +207,8 @@ impl Products {
         }
     }
 
-    /// new ← scale·new, the next term of x; x += new, v += rate·new. Returns the largest |new| of each perturbation, which is
-    /// infinite or no number where a term is so.
+    /// new ← scale·new is the next term of x; then x ← x + new and v ← v + rate·new. Returns the largest |new| of
+    /// each perturbation, which is infinite or NaN if a term is.
     pub fn add_term(
         &self,
         new: &mut [Numbers],
@@ -219,7 +219,8 @@ impl Products {
     }
 }
 
-/// The real entries of a complex one among n rows and m columns: z x = (re x_re − im x_im) + i (im x_re + re x_im).
+/// Visits the real entries that represent a complex one among n rows and m columns: z x = (re x_re − im x_im) + i (im
+/// x_re + re x_im).
 fn each_part(
     (n, m): (usize, usize),
     parts: usize,
@@ -271,7 +272,7 @@ impl WithSimd for Multiply<'_> {
     }
 }
 
-/// y −= a x
+/// y ← y − a x.
 #[inline(always)]
 fn subtract(y: &mut Numbers, a: f64, x: &Numbers) {
     let mut k = 0;

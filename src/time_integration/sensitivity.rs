@@ -10,12 +10,12 @@ use crate::time_integration::unrolled_structure::System;
 use crate::time_integration::variation::{Interval, Variation};
 use crate::time_integration::variational_equations::VariationalEquations;
 
-/// The derivatives, and memory to integrate them.
+/// Derivatives of the state after a lapse by the initial state, with memory to integrate them.
 pub(crate) struct Sensitivity<'s> {
     basis: PerturbationBasis<'s, f64>,
-    /// Relative motion of each slider.
+    /// Row of the relative motion of each slider; `None` without a slider.
     rows: Vec<Option<Row>>,
-    /// First stretch of a state.
+    /// Index of the first stretch in a state.
     first: usize,
 }
 
@@ -38,19 +38,20 @@ impl<'s> Sensitivity<'s> {
         })
     }
 
-    /// Entry `to` of the state after the lapse by entry `from` of the initial state.
+    /// Derivative of entry `to` of the state after the lapse by entry `from` of the initial state.
     pub fn by_initial(&self, from: usize, to: usize) -> f64 {
         self.basis.columns[from * self.basis.states() + to]
     }
 
-    /// The identity, before a lapse.
+    /// Sets the derivatives to the identity, before a lapse.
     pub fn begin(&mut self) -> &mut Self {
         self.basis.begin();
         self.exchange();
         self
     }
 
-    /// Exchanges stretches and sliders, by the same step in both directions: δw = r·δx − δe, δe = r·δx − δw.
+    /// Exchanges stretches and places of sliders; the step is the same in both directions: δw = r·δx − δe, δe = r·δx
+    /// − δw.
     fn exchange(&mut self) {
         let states = self.basis.states();
         for column in self.basis.columns.chunks_exact_mut(states.max(1)) {

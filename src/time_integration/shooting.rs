@@ -59,15 +59,15 @@ pub(crate) fn check_shooting(order: usize) -> Result<()> {
     check_memory::<f64>(states.saturating_mul(states).saturating_mul(2), "shooting in time")
 }
 
-/// Result of a search.
+/// Result of a search for a steady state.
 pub(crate) struct Steady {
     /// The state at time 0.
     pub state: State,
     /// Largest change over a lapse, relative to the largest displacement and velocity.
     pub residual: f64,
-    /// Periods that were integrated, rounded up.
+    /// Number of periods that were integrated, rounded up.
     pub periods: usize,
-    /// `Ok` or `StoppedByCaller`.
+    /// Status: `Ok`, or `StoppedByCaller`.
     pub status: Status,
     /// Whether periods were marched.
     pub marched: bool,
@@ -79,28 +79,38 @@ enum Outcome {
     Stopped,
 }
 
-/// Memory of a search.
+/// A search for a steady state, with its memory.
 pub(crate) struct Search<'a, 'h, 's> {
     system: &'a mut System<'s>,
     event_loop: &'a mut EventLoop,
     options: &'a TimeOptions<'a>,
     hooks: &'a mut Hooks<'h>,
     state: State,
-    /// The state after a lapse from `state`, and the same with the sectors shifted.
-    image: State,
-    shifted: State,
+    images: Images,
     scale: (f64, f64),
     residual: f64,
     laps: usize,
     most_laps: usize,
-    /// Whether the frequency is an unknown, because no force has one.
-    free: bool,
-    /// Whether the motion that is sought is near the first state.
-    near: bool,
-    /// Whether a residual within the tolerance ends the search, which else goes on to round-off.
-    quick: bool,
+    sought: Sought,
     /// Unit of velocities in the equations factorised last.
     unit: f64,
+}
+
+/// A lapse later.
+pub(crate) struct Images {
+    /// The state after a lapse from `state`, and the same with the sectors shifted.
+    image: State,
+    shifted: State,
+}
+
+/// Kind of motion that is sought.
+pub(crate) struct Sought {
+    /// Whether the frequency is an unknown, because no force has one.
+    free: bool,
+    /// Whether the motion must be near the first state.
+    near: bool,
+    /// Whether a residual within the tolerance ends the search; else it goes on to round-off.
+    quick: bool,
 }
 
 impl<'a, 'h, 's> Search<'a, 'h, 's> {
@@ -113,10 +123,12 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         start: State,
     ) -> Result<Self> {
         Ok(Self {
-            image: start.try_clone()?,
-            shifted: start.try_clone()?,
+            images: Images {
+                image: start.try_clone()?,
+                shifted: start.try_clone()?,
+            },
             state: start,
-            most_laps: options.max_periods.saturating_mul(system.lapses),
+            most_laps: options.max_periods.saturating_mul(system.wave.lapses),
             system,
             event_loop,
             options,
@@ -124,9 +136,11 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
             scale: (0.0, 0.0),
             residual: f64::INFINITY,
             laps: 0,
-            free: false,
-            near: false,
-            quick: false,
+            sought: Sought {
+                free: false,
+                near: false,
+                quick: false,
+            },
             unit: 1.0,
         })
     }
@@ -134,13 +148,13 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
     /// Makes the frequency an unknown. Its equation fixes the phase: the state moves at right angles to its own
     /// rate.
     pub fn free_frequency(mut self) -> Self {
-        self.free = true;
+        self.sought.free = true;
         self
     }
 
     /// Ends the search as soon as the residual is within the tolerance.
     pub fn quick(mut self) -> Self {
-        self.quick = true;
+        self.sought.quick = true;
         self
     }
 
@@ -151,7 +165,7 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         if size > 0.0 {
             self.event_loop.bounds = (SHOOTING_BEYOND * size, SHOOTING_BEYOND * size * self.system.omega);
         }
-        self.near = true;
+        self.sought.near = true;
         let outcome = self.shoot();
         self.event_loop.without_bounds();
         let status = match outcome {
@@ -179,7 +193,7 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
 
     fn result(self, status: Status, marched: bool) -> Steady {
         Steady {
-            periods: self.laps.div_ceil(self.system.lapses),
+            periods: self.laps.div_ceil(self.system.wave.lapses),
             state: self.state,
             residual: self.residual,
             status,
@@ -200,7 +214,7 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
             }
             if matches!(outcome, Outcome::Failed) {
                 *marched = true;
-                outcome = self.march(march.saturating_mul(self.system.lapses))?;
+                outcome = self.march(march.saturating_mul(self.system.wave.lapses))?;
                 march *= 2;
             }
             match outcome {
@@ -211,7 +225,8 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         }
     }
 
-    /// Integrates one lapse from the state; the image is shifted and compared. `true`: the caller requested a stop.
+    /// Integrates one lapse from the state, shifts the image, and compares it with the state. `true`: the caller
+    /// requested a stop.
     fn lap(&mut self, sensitivity: Option<&mut Sensitivity<'s>>) -> Result<bool> {
         if self.laps >= self.most_laps {
             return fail!(
@@ -222,15 +237,15 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
             );
         }
         self.laps += 1;
-        self.image.set(&self.state);
+        self.images.image.set(&self.state);
         let summary = {
             let observers = Observers {
                 variation: sensitivity.map(|s| s.begin() as &mut dyn Variation),
                 ..Observers::default()
             };
-            self.event_loop.run(self.system, &mut self.image, observers)?
+            self.event_loop.run(self.system, &mut self.images.image, observers)?
         };
-        if self.near && self.laps == 1 {
+        if self.sought.near && self.laps == 1 {
             self.event_loop.most_steps = SHOOTING_LEAST_STEPS.max(SHOOTING_STEPS.saturating_mul(self.event_loop.steps));
         }
         self.compare(&summary);
@@ -247,19 +262,20 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         Ok(self.hooks.report(&progress))
     }
 
-    /// Shifts the image and measures its distance from the state.
+    /// Shifts the image, so that each sector has the values of the one with the same motion a lapse later, and
+    /// measures its relative distance from the state.
     fn compare(&mut self, summary: &LapseSummary) {
         let system = &*self.system;
-        shift(system, system.ndof, &self.image.x, &mut self.shifted.x);
-        shift(system, system.ndof, &self.image.v, &mut self.shifted.v);
-        shift(system, 1, &self.image.e, &mut self.shifted.e);
+        shift(system, system.ndof, &self.images.image.x, &mut self.images.shifted.x);
+        shift(system, system.ndof, &self.images.image.v, &mut self.images.shifted.v);
+        shift(system, 1, &self.images.image.e, &mut self.images.shifted.e);
         let unit = |x: f64| if x > 0.0 { x } else { 1.0 };
         self.scale = (unit(summary.largest.0), unit(summary.largest.1));
         self.residual = 0.0;
         for (a, b, scale) in [
-            (&self.shifted.x, &self.state.x, self.scale.0),
-            (&self.shifted.v, &self.state.v, self.scale.1),
-            (&self.shifted.e, &self.state.e, self.scale.0),
+            (&self.images.shifted.x, &self.state.x, self.scale.0),
+            (&self.images.shifted.v, &self.state.v, self.scale.1),
+            (&self.images.shifted.e, &self.state.e, self.scale.0),
         ] {
             for (a, b) in a.iter().zip(b) {
                 let gap = (a - b).abs() / scale;
@@ -274,7 +290,7 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
             if self.lap(None)? {
                 return Ok(Outcome::Stopped);
             }
-            self.state.set(&self.shifted);
+            self.state.set(&self.images.shifted);
             if self.residual <= self.options.tolerance {
                 return Ok(Outcome::Found);
             }
@@ -285,7 +301,7 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
     /// Newton's method with halved steps where a whole one increases the error. The monodromy is kept as long as steps
     /// with it reduce the error fast; then each of them costs a lapse of the motion alone.
     fn shoot(&mut self) -> Result<Outcome> {
-        let unknowns = self.state.len() + usize::from(self.free);
+        let unknowns = self.state.len() + usize::from(self.sought.free);
         let of_structure = 2 * self.state.x.len();
         if unknowns > 2 * of_structure && unknowns.saturating_mul(unknowns).saturating_mul(8) > MOST_BYTES {
             return Ok(Outcome::Failed);
@@ -305,11 +321,11 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
             loop {
                 let residual = self.residual;
                 let converged = residual <= self.options.tolerance;
-                if converged && self.quick {
+                if converged && self.sought.quick {
                     return Ok(Outcome::Found);
                 }
                 // With the frequency as an unknown the equations change with the rates.
-                let fresh = damped || self.free;
+                let fresh = damped || self.sought.free;
                 if fresh {
                     self.equations(&sensitivity, &mut equations)?;
                 }
@@ -348,8 +364,8 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         Ok(Outcome::Failed)
     }
 
-    /// Steps from `base` by the longest halved share of the step that reduces the error below `residual`, down to the
-    /// shortest one; `true`: the caller requested a stop.
+    /// Steps from `base` by the longest halved share of the step that reduces the error below `residual`, but not
+    /// shorter than `shortest`; `true`: the caller requested a stop.
     fn step_from(&mut self, base: &State, omega: f64, step: &[f64], (residual, shortest): (f64, f64)) -> Result<bool> {
         let mut share = 1.0;
         loop {
@@ -371,7 +387,7 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         }
     }
 
-    /// Whether the slider of a stretch rests in all sectors, which then has a fixed place and no equation.
+    /// Whether the slider of a stretch does not move in any sector, so that it has a fixed place and no equation.
     fn rests(&self, i: usize) -> bool {
         let n = self.state.x.len();
         i >= 2 * n
@@ -387,11 +403,11 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
 
     /// Fills the matrix I − S ∂G/∂z, with a free frequency bordered by the rate of the state.
     fn equations(&mut self, s: &Sensitivity<'_>, equations: &mut LeastSquares) -> Result<()> {
-        let rates = if self.free { Some(self.rates()?) } else { None };
+        let rates = if self.sought.free { Some(self.rates()?) } else { None };
         // Velocities are scaled to displacements, so that pivots compare.
         self.unit = self.scale.1 / self.scale.0;
         let (system, m, n) = (&*self.system, self.state.len(), self.state.x.len());
-        let order = m + usize::from(self.free);
+        let order = m + usize::from(self.sought.free);
         let unit = |i: usize| if (n..2 * n).contains(&i) { self.unit } else { 1.0 };
         let matrix = equations.matrix();
         matrix.fill(0.0);
@@ -437,9 +453,9 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         for (i, step) in step.iter_mut().enumerate().take(m) {
             *step = match i {
                 i if self.rests(i) => 0.0,
-                i if i < n => self.shifted.x[i] - self.state.x[i],
-                i if i < 2 * n => (self.shifted.v[i - n] - self.state.v[i - n]) / unit(i),
-                i => self.shifted.e[i - 2 * n] - self.state.e[i - 2 * n],
+                i if i < n => self.images.shifted.x[i] - self.state.x[i],
+                i if i < 2 * n => (self.images.shifted.v[i - n] - self.state.v[i - n]) / unit(i),
+                i => self.images.shifted.e[i - 2 * n] - self.state.e[i - 2 * n],
             };
         }
         if fresh {
@@ -456,7 +472,7 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
     /// Rates of the state and of its image: (x′, v′, e′).
     fn rates(&mut self) -> Result<(Vec<f64>, Vec<f64>)> {
         let mut pair = (Vec::new(), Vec::new());
-        for (rates, state) in [(&mut pair.0, &self.state), (&mut pair.1, &self.image)] {
+        for (rates, state) in [(&mut pair.0, &self.state), (&mut pair.1, &self.images.image)] {
             let (a, w) = self.event_loop.rates(self.system, state)?;
             try_extend(rates, &state.v, "Newton's method in time")?;
             try_extend(rates, &a, "Newton's method in time")?;
@@ -472,7 +488,7 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         Ok(pair)
     }
 
-    /// state = base + share·step, and the frequency where it is free.
+    /// state ← base + share·step, and the frequency where it is an unknown.
     fn advance(&mut self, base: &State, omega: f64, step: &[f64], share: f64) {
         let n = base.x.len();
         let (x, rest) = step.split_at(n);
@@ -507,7 +523,7 @@ fn source_of(system: &System<'_>, n: usize, i: usize) -> (usize, f64) {
 
 /// Source of the entry `i` of a shifted vector and its sign, with `block` entries per sector.
 fn shifted_from(system: &System<'_>, block: usize, i: usize) -> (usize, f64) {
-    let (sector, within) = (i / block % system.sectors, i % block);
+    let (sector, within) = (i / block % system.wave.sectors, i % block);
     let group = i - sector * block - within;
     let (to, sign) = system.after_lapse(sector);
     (group + to * block + within, sign)

@@ -9,15 +9,15 @@ use crate::time_integration::unrolled_structure::System;
 
 const CONTEXT: &str = "the contacts at a time";
 
-/// Memory of the laws at the nodes.
+/// Smooth laws at the nodes of a step, with their memory.
 pub(crate) struct Smooth {
-    /// First tangent of each element within those of a node.
+    /// Index of each element's first tangent among those of a node.
     starts: Vec<usize>,
     /// Tangents by motions, d × d, and by velocities, d × d, of every element; node after node.
     tangents: Vec<f64>,
     /// Number of tangents per node.
     per_node: usize,
-    /// Relative motions, velocities and forces of one element, and memory for the law.
+    /// Relative motions, velocities and forces of one element; and memory for the law.
     u: Vec<f64>,
     v: Vec<f64>,
     f: Vec<f64>,
@@ -48,7 +48,7 @@ impl Smooth {
         })
     }
 
-    /// r += Rᵀ f(R x, R v); the tangents are stored.
+    /// r ← r + Rᵀ f(R x, R v) at a node; the tangents are stored.
     ///
     /// # Errors
     /// Those of a callback.
@@ -99,8 +99,8 @@ impl Smooth {
         both.split_at(both.len() / 2)
     }
 
-    /// Visits the tangents of a node that are not zero: (degree of freedom of the force, that of the motion,
-    /// ∂f/∂x, ∂f/∂v).
+    /// Visits the nonzero tangents of a node: degree of freedom of the force, degree of freedom of the motion, ∂f/∂x,
+    /// ∂f/∂v.
     pub fn each(&self, system: &System<'_>, node: usize, mut visit: impl FnMut(usize, usize, f64, f64)) {
         for (e, &start) in system.elements.iter().zip(&self.starts) {
             if e.smooth().is_none() {

@@ -11,13 +11,13 @@ pub(crate) const DEGREE: usize = 26;
 /// The motion x(t₀ + θh) = Σₖ Xₖ θᵏ, 0 ≤ θ ≤ 1, of n degrees of freedom.
 pub(crate) struct StepPolynomial {
     n: usize,
-    /// Degree in use.
+    /// Degree of the polynomials in use.
     pub degree: usize,
-    /// X₀, X₁, …
+    /// Coefficients X₀, X₁, …, n numbers each.
     pub coefficients: Vec<f64>,
-    /// t₀
+    /// Time t₀ at the beginning of the step.
     pub begin: f64,
-    /// h
+    /// Length h of the step.
     pub length: f64,
 }
 
@@ -33,12 +33,12 @@ impl StepPolynomial {
         })
     }
 
-    /// Xₖ
+    /// Coefficients Xₖ of all degrees of freedom.
     pub fn term(&self, k: usize) -> &[f64] {
         &self.coefficients[k * self.n..(k + 1) * self.n]
     }
 
-    /// x and v at θ.
+    /// Displacements x and velocities v at the share θ of the step.
     pub fn at(&self, theta: f64, x: &mut [f64], v: &mut [f64]) {
         x.fill(0.0);
         v.fill(0.0);
@@ -61,13 +61,13 @@ impl StepPolynomial {
         }
     }
 
-    /// y(θ) − y(0) of a relative motion, without cancellation.
+    /// Change y(θ) − y(0) of a relative motion, without cancellation.
     pub fn growth(&self, row: &Row, theta: f64) -> f64 {
         let sum = |sum: f64, k: usize| sum * theta + along(row, self.term(k));
         theta * (1..=self.degree).rev().fold(0.0, sum)
     }
 
-    /// Rescales to the step of `factor` times the length.
+    /// Rescales the polynomials to a step of `factor` times the length.
     pub fn rescale(&mut self, factor: f64) {
         let mut power = 1.0;
         for k in 1..=self.degree {
@@ -171,7 +171,7 @@ fn bernstein(c: &[f64]) -> [f64; DEGREE + 1] {
     b
 }
 
-/// The two halves by de Casteljau's algorithm.
+/// The two halves of a polynomial in Bernstein's form, by de Casteljau's algorithm.
 fn halves(b: &[f64]) -> ([f64; DEGREE + 1], [f64; DEGREE + 1]) {
     let n = b.len() - 1;
     let (mut left, mut right) = ([0.0; DEGREE + 1], [0.0; DEGREE + 1]);

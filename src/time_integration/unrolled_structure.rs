@@ -41,7 +41,7 @@ impl Sparse {
         Ok(real)
     }
 
-    /// y += s·A x
+    /// y ← y + s·A x.
     pub fn multiply_add(&self, s: f64, x: &[f64], y: &mut [f64]) {
         for (j, &x) in x.iter().enumerate() {
             let sx = s * x;
@@ -53,7 +53,7 @@ impl Sparse {
         }
     }
 
-    /// Adds s·A to a dense block: `put(row, column, value)`.
+    /// Visits the entries of the matrix: `put(row, column, value)`.
     pub fn each(&self, mut put: impl FnMut(usize, usize, f64)) {
         for j in 0..self.starts.len() - 1 {
             for k in self.starts[j]..self.starts[j + 1] {
@@ -65,7 +65,7 @@ impl Sparse {
 
 /// Factors of the mass matrix.
 enum Mass {
-    /// 1/mᵢᵢ of a diagonal one.
+    /// Reciprocals 1/mᵢᵢ of a diagonal mass matrix.
     Diagonal(Vec<f64>),
     General {
         factor: Box<Factor>,
@@ -73,7 +73,7 @@ enum Mass {
     },
 }
 
-/// A force Re(value·e^{i·harmonic·ωt}).
+/// A harmonic force Re(value·e^{i·harmonic·ωt}).
 #[derive(Clone)]
 pub(crate) struct Load {
     pub dof: usize,
@@ -83,36 +83,46 @@ pub(crate) struct Load {
 
 /// The equations of motion of all carried sectors.
 pub(crate) struct System<'s> {
-    /// Asked by every loop of the integration.
+    /// Interrupt that every loop of the integration checks.
     pub interrupt: &'s Interrupt<'s>,
-    /// Independent degrees of freedom of a sector.
+    /// Number of independent degrees of freedom of a sector.
     pub ndof: usize,
-    /// The map from those of the caller.
+    /// Map from the caller's degrees of freedom to the independent ones.
     pub degrees: DegreeMap,
-    /// Sectors that are carried.
-    pub sectors: usize,
-    /// Lapses of a period.
-    pub lapses: usize,
-    /// Whether the motion past the carried sectors is theirs with the opposite sign.
-    pub folded: bool,
-    /// x_{s+j}(t + T/sectors) = x_s(t) with this j.
-    pub follower: usize,
+    pub wave: CarriedSectors,
     /// Angular frequency of harmonic 1, at time 0 where it changes.
     pub omega: f64,
     /// Its change per time; 0 in a periodic motion.
     pub omega_rate: f64,
-    mass: Mass,
-    /// M
-    pub inertia: Sparse,
-    /// C
-    pub damping: Sparse,
-    /// K with springs and contacts that always stick.
-    pub stiffness: Sparse,
+    pub matrices: Matrices,
     pub loads: Vec<Load>,
     /// The springs within the stiffness.
     pub springs: Vec<Spring>,
     /// Contacts with events or smooth laws, all sectors of one contact after the other.
     pub elements: Vec<Element>,
+}
+
+/// The sectors that are carried, and how the others follow from them.
+pub(crate) struct CarriedSectors {
+    /// Sectors that are carried.
+    pub sectors: usize,
+    /// Number of lapses in a period.
+    pub lapses: usize,
+    /// Whether only half of the sectors are carried, and the others move opposite to them.
+    pub folded: bool,
+    /// Number j of sectors with x_{s+j}(t + T/sectors) = x_s(t).
+    pub follower: usize,
+}
+
+/// Matrices of a sector.
+pub(crate) struct Matrices {
+    solver: Mass,
+    /// M
+    pub inertia: Sparse,
+    /// Damping matrix C of all carried sectors.
+    pub damping: Sparse,
+    /// Stiffness matrix K with springs and contacts that always stick.
+    pub stiffness: Sparse,
 }
 
 impl<'s> System<'s> {
@@ -123,7 +133,7 @@ impl<'s> System<'s> {
         Ok(system)
     }
 
-    /// The same without the forces of the model.
+    /// The structure of a model at angular frequency `omega`, without the forces of the model.
     pub fn unforced(model: &Model, omega: f64, interrupt: &'s Interrupt<'s>) -> Result<Self> {
         interrupt.phase(Phase::Setup, 0.0)?;
         let model = &*model.at_frequency(omega)?;
@@ -155,16 +165,20 @@ impl<'s> System<'s> {
             interrupt,
             ndof,
             degrees: structure.degrees().clone(),
-            sectors,
-            lapses: sectors,
-            folded: false,
-            follower: structure.sectors_per_part(),
+            wave: CarriedSectors {
+                sectors,
+                lapses: sectors,
+                folded: false,
+                follower: structure.sectors_per_part(),
+            },
             omega,
             omega_rate: 0.0,
-            mass: Mass::new(&inertia, ndof, interrupt)?,
-            inertia: Sparse::new(&inertia)?,
-            damping: Sparse::new(&damping)?,
-            stiffness: Sparse::new(&stiffness)?,
+            matrices: Matrices {
+                solver: Mass::new(&inertia, ndof, interrupt)?,
+                inertia: Sparse::new(&inertia)?,
+                damping: Sparse::new(&damping)?,
+                stiffness: Sparse::new(&stiffness)?,
+            },
             loads: Vec::new(),
             springs,
             elements,
@@ -176,10 +190,10 @@ impl<'s> System<'s> {
         for force in model.excitation().forces() {
             let (offset, terms) = structure.degrees().image(force.dof);
             for (dof, c) in terms {
-                for s in 0..self.sectors {
+                for s in 0..self.wave.sectors {
                     self.interrupt.check_before(OF_ONE_SECTOR)?;
                     let load = Load {
-                        dof: (s + offset as usize) % self.sectors * self.ndof + dof,
+                        dof: (s + offset as usize) % self.wave.sectors * self.ndof + dof,
                         harmonic: force.harmonic,
                         value: c * force.value * structure.phase(force.harmonic, s as i64),
                     };
@@ -192,7 +206,7 @@ impl<'s> System<'s> {
 
     /// Adds forces of a harmonic on all degrees of freedom of this sector; the others lag with the wave.
     pub fn add_forces(&mut self, structure: &Structure, harmonic: usize, force: &[Complex64]) -> Result<()> {
-        for s in 0..self.sectors {
+        for s in 0..self.wave.sectors {
             self.interrupt.check_before(OF_ONE_SECTOR)?;
             let phase = structure.phase(harmonic, s as i64);
             for (dof, &value) in force.iter().enumerate().filter(|(_, f)| **f != Complex64::ZERO) {
@@ -207,33 +221,35 @@ impl<'s> System<'s> {
         Ok(())
     }
 
-    /// Operations of one product with the matrices, for the checks of the interrupt.
+    /// Number of operations of one product with the matrices, for the checks of the interrupt.
     pub fn operations(&self) -> u64 {
-        let entries = self.stiffness.values.len() + self.damping.values.len() + self.inertia.values.len();
+        let entries = self.matrices.stiffness.values.len()
+            + self.matrices.damping.values.len()
+            + self.matrices.inertia.values.len();
         (2 * entries + OF_ONE_ELEMENT * self.elements.len()) as u64 + 1000
     }
 
-    /// Degrees of freedom of all carried sectors.
+    /// Number of degrees of freedom of all carried sectors.
     pub fn order(&self) -> usize {
-        self.ndof * self.sectors
+        self.ndof * self.wave.sectors
     }
 
-    /// The part of the period after which every sector repeats the motion of another one.
+    /// Length of a lapse: part of the period after which every sector repeats the motion of another one.
     pub fn lapse(&self) -> f64 {
-        TAU / self.omega / self.lapses as f64
+        TAU / self.omega / self.wave.lapses as f64
     }
 
-    /// The sector whose motion after a lapse is that of sector `s` now, and the sign with which it is.
+    /// The sector whose motion after a lapse equals the present one of sector `s`, and the sign with which it does.
     pub fn after_lapse(&self, s: usize) -> (usize, f64) {
-        let to = s + self.follower;
-        let opposite = self.folded && !(to / self.sectors).is_multiple_of(2);
-        (to % self.sectors, if opposite { -1.0 } else { 1.0 })
+        let to = s + self.wave.follower;
+        let opposite = self.wave.folded && !(to / self.wave.sectors).is_multiple_of(2);
+        (to % self.wave.sectors, if opposite { -1.0 } else { 1.0 })
     }
 
-    /// The same structure with half the sectors, for motions whose other half moves opposite to them; the number of
-    /// sectors is even, forces have odd harmonics and laws are odd.
+    /// The equations of half the sectors, for motions whose other half moves opposite to them. The number of sectors
+    /// must be even, forces must have odd harmonics, and laws must be odd.
     pub fn folded(&self) -> Result<Self> {
-        let half = self.sectors / 2;
+        let half = self.wave.sectors / 2;
         let n = half * self.ndof;
         let fold = |a: &Sparse| -> Result<Csc> {
             let mut entries = try_vec(a.values.len(), (0, 0, Complex64::ZERO), CONTEXT)?;
@@ -262,21 +278,25 @@ impl<'s> System<'s> {
             }
             try_push(&mut elements, e, CONTEXT)?;
         }
-        let inertia = fold(&self.inertia)?;
+        let inertia = fold(&self.matrices.inertia)?;
         Ok(Self {
             interrupt: self.interrupt,
             ndof: self.ndof,
             degrees: self.degrees.clone(),
-            sectors: half,
-            lapses: self.lapses,
-            folded: true,
-            follower: self.follower,
+            wave: CarriedSectors {
+                sectors: half,
+                lapses: self.wave.lapses,
+                folded: true,
+                follower: self.wave.follower,
+            },
             omega: self.omega,
             omega_rate: self.omega_rate,
-            mass: Mass::new(&inertia, self.ndof, self.interrupt)?,
-            inertia: Sparse::new(&inertia)?,
-            damping: Sparse::new(&fold(&self.damping)?)?,
-            stiffness: Sparse::new(&fold(&self.stiffness)?)?,
+            matrices: Matrices {
+                solver: Mass::new(&inertia, self.ndof, self.interrupt)?,
+                inertia: Sparse::new(&inertia)?,
+                damping: Sparse::new(&fold(&self.matrices.damping)?)?,
+                stiffness: Sparse::new(&fold(&self.matrices.stiffness)?)?,
+            },
             loads,
             springs: Vec::new(),
             elements,
@@ -288,9 +308,9 @@ impl<'s> System<'s> {
         !self.elements.iter().any(|e| e.smooth().is_some())
     }
 
-    /// a ← M⁻¹ a
+    /// a ← M⁻¹ a.
     pub fn accelerate(&mut self, a: &mut [f64]) -> Result<()> {
-        match &mut self.mass {
+        match &mut self.matrices.solver {
             Mass::Diagonal(inverse) => {
                 for (a, m) in a.iter_mut().zip(inverse) {
                     *a *= *m;
@@ -316,7 +336,7 @@ impl<'s> System<'s> {
         }
     }
 
-    /// e^{ihφ} at time t, with the phase φ = ωt, or ωt + ω′t²/2 where the frequency changes.
+    /// Phase factor e^{ihφ} at time t, with φ = ωt, or φ = ωt + ω′t²/2 where the frequency changes.
     pub fn turn(&self, harmonic: usize, t: f64) -> Complex64 {
         let h = harmonic as f64;
         if self.omega_rate == 0.0 {
@@ -337,7 +357,7 @@ impl<'s> System<'s> {
     }
 }
 
-/// K with the springs added.
+/// Stiffness K with the springs added.
 fn with_springs(stiffness: &Csc, springs: &[Spring], interrupt: &Interrupt<'_>) -> Result<Csc> {
     let n = stiffness.rows;
     let mut entries = Vec::new();
@@ -400,8 +420,8 @@ pub(crate) fn refuse_massless(m: &Csc, ndof: usize) -> Result<()> {
     }
 }
 
-/// Structural damping defines no motion in time: its force follows the future of the motion, too (Crandall 1970,
-/// doi:10.1016/0022-460X(70)90105-5).
+/// Refuses structural damping, which defines no motion in time: its force depends on the future of the motion, too
+/// (Crandall 1970, doi:10.1016/0022-460X(70)90105-5).
 ///
 /// # Errors
 /// `Unsupported`.

@@ -17,19 +17,20 @@ pub(crate) trait Variation {
     /// `StoppedByCaller`; `Singular` of an implicit step.
     fn advance(&mut self, interval: &Interval<'_>) -> Result<()>;
 
-    /// At the end of a motion of the slider of an element, δw = δx + share·δy.
+    /// Receives, at the end of a motion of an element's slider, the rule δw = δx + share·δy by which its place
+    /// follows.
     ///
     /// # Errors
     /// As [`Self::advance`].
     fn couple(&mut self, element: usize, share: f64) -> Result<()>;
 
-    /// At the end of the lapse.
+    /// Ends the lapse: no further interval follows.
     ///
     /// # Errors
     /// As [`Self::advance`].
     fn end(&mut self) -> Result<()>;
 
-    /// The motion of an element touches an event without passing it: derivatives differ on both sides.
+    /// Receives that the motion of an element touches an event without passing it: derivatives differ on both sides.
     fn graze(&mut self, element: usize, grazing: Grazing);
 }
 
@@ -37,20 +38,20 @@ pub(crate) trait Variation {
 pub(crate) struct Interval<'a> {
     /// Tangents of the contacts with events.
     pub pieces: &'a [TimePiece],
-    /// Its length.
+    /// Length of the interval in time.
     pub length: f64,
-    /// The implicit step whose begin the interval is, where a law is smooth.
+    /// The implicit step at whose beginning the interval lies, where a law is smooth; else `None`.
     pub collocation: Option<Collocation<'a>>,
 }
 
-/// An implicit step.
+/// An implicit step of the motion, for its perturbations.
 pub(crate) struct Collocation<'a> {
-    /// Nodes and weights.
+    /// Nodes and weights of the collocation.
     pub tables: &'a GaussTables,
     /// Tangents of the smooth laws at the nodes.
     pub smooth: &'a Smooth,
     /// Length of the whole step.
     pub step: f64,
-    /// Share of the step that the interval is.
+    /// Share of the step that the interval covers.
     pub theta: f64,
 }

@@ -17,31 +17,31 @@ const CONTEXT: &str = "the equations of perturbations";
 /// Kind: block.
 pub(crate) const VARIATIONAL_EQUATIONS_LANES: usize = 8;
 
-/// One real number of each of the perturbations that are carried together.
+/// A real number for each of the perturbations that are carried together.
 pub(super) type Numbers = [f64; VARIATIONAL_EQUATIONS_LANES];
 
-/// Numbers of perturbations: real ones, or complex ones.
+/// Type of numbers for perturbations, real or complex.
 pub(crate) trait Number: Entry + Scalar {}
 
 impl Number for f64 {}
 impl Number for Complex64 {}
 
-/// Row of a relative motion: entries (degree of freedom, coefficient).
+/// Row of a relative motion: pairs (degree of freedom, coefficient).
 pub(crate) type VariationalRow<T> = [Option<(usize, T)>; MOTION_TERMS];
 
-/// A contact in these equations.
+/// A contact in the equations of perturbations.
 pub(crate) struct VariationalElement<T> {
-    /// Number of the element in the structure in time.
+    /// Index of the element in the structure in time.
     pub source: usize,
-    /// Its relative motions.
+    /// Rows of the relative motions of the contact.
     pub rows: Vec<VariationalRow<T>>,
-    /// Number of its slider among those that are carried.
+    /// Index of its slider among those that are carried; `None` without a slider.
     pub slider: Option<usize>,
-    /// Whether its law has no events.
+    /// Whether the law of the contact has no events.
     pub smooth: bool,
 }
 
-/// The equations of a number of degrees of freedom.
+/// The equations of perturbations: matrices M, C, K and contacts.
 pub(crate) struct VariationalEquations<T> {
     pub(super) order: usize,
     pub(super) mass: Columns<T>,
@@ -49,7 +49,7 @@ pub(crate) struct VariationalEquations<T> {
     pub(super) damping: Columns<T>,
     pub(super) stiffness: Columns<T>,
     pub(super) elements: Vec<VariationalElement<T>>,
-    /// Number of sliders.
+    /// Number of sliders that are carried.
     pub(super) sliders: usize,
 }
 
@@ -61,7 +61,7 @@ pub(super) struct Columns<T> {
 
 /// Factors of the mass matrix.
 enum MassFactor {
-    /// 1/mᵢᵢ of a diagonal one.
+    /// Reciprocals 1/mᵢᵢ of a diagonal mass matrix.
     Diagonal(Vec<f64>),
     General {
         factor: Box<Factor>,
@@ -82,7 +82,7 @@ impl<T: Number> Columns<T> {
         Ok(Self { starts, entries })
     }
 
-    /// Its entries (row, column, value).
+    /// Entries of the matrix: (row, column, value).
     pub fn each(&self) -> impl Iterator<Item = (usize, usize, T)> {
         let columns = self.starts.windows(2).enumerate();
         columns.flat_map(|(j, ends)| self.entries[ends[0]..ends[1]].iter().map(move |&(i, v)| (i, j, v)))
@@ -124,13 +124,13 @@ impl<T: Number> VariationalEquations<T> {
         matches!(self.mass_factor, MassFactor::Diagonal(_))
     }
 
-    /// Operations of one product with the matrices and elements.
+    /// Number of operations of one product with the matrices and elements.
     pub(super) fn operations(&self) -> u64 {
         let elements = OF_ONE_ELEMENT * self.elements.len();
         (VARIATIONAL_EQUATIONS_LANES * (self.stiffness.len() + self.damping.len() + self.order + elements)) as u64
     }
 
-    /// 1/mᵢᵢ of a diagonal mass.
+    /// Reciprocals 1/mᵢᵢ of a diagonal mass; `None` for another mass.
     pub(super) fn inverse_mass(&self) -> Option<&[f64]> {
         match &self.mass_factor {
             MassFactor::Diagonal(inverse) => Some(inverse),
@@ -138,7 +138,7 @@ impl<T: Number> VariationalEquations<T> {
         }
     }
 
-    /// a ← M⁻¹ a of a mass that is not diagonal, real parts before imaginary ones.
+    /// a ← M⁻¹ a for a mass that is not diagonal; real parts come before imaginary ones.
     pub(super) fn accelerate(&mut self, a: &mut [Numbers], interrupt: &Interrupt<'_>) -> Result<()> {
         let n = self.order;
         let MassFactor::General { factor, buffer } = &mut self.mass_factor else {
@@ -163,7 +163,7 @@ impl<T: Number> VariationalEquations<T> {
 }
 
 impl VariationalEquations<f64> {
-    /// Those of the states of the structure in time; each element has the place of a slider.
+    /// The equations for perturbations of the structure in time; each element has the place of a slider.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -196,9 +196,9 @@ impl VariationalEquations<f64> {
             }
         };
         let matrices = [
-            sparse(&system.inertia)?,
-            sparse(&system.damping)?,
-            sparse(&system.stiffness)?,
+            sparse(&system.matrices.inertia)?,
+            sparse(&system.matrices.damping)?,
+            sparse(&system.matrices.stiffness)?,
         ];
         let [m, c, k] = &matrices;
         let count = elements.len();

@@ -37,19 +37,19 @@ const VARIATIONAL_STEP_OVERFLOW: f64 = 1e200;
 /// Kind: cap.
 const MOST_PARTS: usize = 1 << 20;
 
-/// Memory of the steps.
+/// Steps of perturbations, with their memory.
 pub(super) struct VariationalStep<T> {
-    /// The matrices of an interval; none where a law is smooth.
+    /// The matrices of an interval; `None` where a law is smooth.
     products: Option<Products>,
     /// Three neighbouring terms of the series.
     terms: [Vec<Numbers>; 3],
-    /// The perturbations at the begin of a part, and sums of their series.
+    /// Perturbations at the beginning of a part; and sums of their series.
     begin: [Vec<Numbers>; 2],
     sums: [Vec<Numbers>; 2],
     sliders: Vec<Numbers>,
-    /// Largest length of a part so far found short enough.
+    /// Largest length of a part that was short enough so far.
     part: f64,
-    /// Equations of an implicit step, where a law is smooth.
+    /// Equations of an implicit step, where a law is smooth; else `None`.
     implicit: Option<Implicit<T>>,
 }
 
@@ -120,7 +120,7 @@ impl<T: Number> VariationalStep<T> {
         Ok(())
     }
 
-    /// Perturbations as lanes, real parts before imaginary ones; missing ones are zero.
+    /// Loads perturbations as lanes, real parts before imaginary ones; missing ones are zero.
     fn load(&mut self, equations: &VariationalEquations<T>, columns: &[T]) {
         let (n, states, sliders) = (equations.order, equations.states(), equations.sliders);
         let [x, v] = &mut self.begin;
@@ -162,7 +162,8 @@ impl<T: Number> VariationalStep<T> {
         Ok(())
     }
 
-    /// One part by the Taylor series; `false`: it is too long, and nothing has changed.
+    /// Carries the perturbations over one part by the Taylor series; `false` if it is too long, and nothing has
+    /// changed.
     fn series(&mut self, equations: &mut VariationalEquations<T>, h: f64, interrupt: &Interrupt<'_>) -> Result<bool> {
         let Some(products) = &self.products else {
             return Ok(true);
@@ -222,7 +223,7 @@ impl<T: Number> VariationalStep<T> {
     }
 }
 
-/// Real numbers of a number.
+/// Number of real numbers that make up one number: 1 or 2.
 fn parts<T: Number>() -> usize {
     if T::IS_COMPLEX { 2 } else { 1 }
 }
@@ -263,7 +264,7 @@ impl<T: Number> Implicit<T> {
         })
     }
 
-    /// The matrix δᵢⱼM + h aᵢⱼCᵢ + h² (A²)ᵢⱼKᵢ of the accelerations at the nodes.
+    /// Factors the matrix δᵢⱼM + h aᵢⱼCᵢ + h² (A²)ᵢⱼKᵢ of the accelerations at the nodes.
     fn factor(
         &mut self,
         equations: &VariationalEquations<T>,
@@ -357,7 +358,8 @@ impl<T: Number> Implicit<T> {
     }
 }
 
-/// Visits the tangents of all contacts at a node: (degree of freedom of the force, that of the motion, ∂f/∂x, ∂f/∂v).
+/// Visits the tangents of all contacts at a node: degree of freedom of the force, degree of freedom of the motion,
+/// ∂f/∂x, ∂f/∂v.
 fn each_tangent<T: Number>(
     equations: &VariationalEquations<T>,
     interval: &Interval<'_>,

@@ -33,9 +33,9 @@ const JUMP: f64 = 1e-5;
 /// Kind: tuned; measured on: not recorded.
 const BIFURCATIONS_NEAR: f64 = 1e-2;
 
-/// A root between two points.
+/// A multiplier's passage through the unit circle between two points.
 struct Passage {
-    /// Share of the arc.
+    /// Position on the arc, as a share of its length.
     at: f64,
     point: Point,
     multiplier: Complex64,
@@ -49,7 +49,7 @@ struct Arc<'p> {
 }
 
 impl Arc<'_> {
-    /// Numbers of the multipliers outside the unit circle at the ends; `None` where one is not known.
+    /// Number of multipliers outside the unit circle at each end; `None` where one is not known.
     fn counts(&self) -> Option<(usize, usize)> {
         let count = |verdict: &Verdict| {
             let all = verdict.unstable?;
@@ -64,7 +64,7 @@ impl Arc<'_> {
 }
 
 impl BranchTracer<'_> {
-    /// Locates and records the bifurcations between the points of the curve recorded last, but for folds.
+    /// Locates and records the bifurcations, folds apart, between the last two recorded points of the curve.
     pub(super) fn find_bifurcations(
         &mut self,
         analysis: &mut dyn Traceable,
@@ -149,7 +149,7 @@ impl BranchTracer<'_> {
         analysis.select(level)
     }
 
-    /// Appends the passages through the unit circle on an arc in its order.
+    /// Appends the passages through the unit circle on an arc, in the order of the arc.
     fn passages(&self, analysis: &mut dyn Traceable, arc: &Arc<'_>, found: &mut Vec<Passage>) -> Result<()> {
         let Some((from, to)) = arc.counts() else {
             return Ok(());
@@ -175,7 +175,7 @@ impl BranchTracer<'_> {
         Ok(())
     }
 
-    /// The place at which the multiplier numbered `order` by falling modulus passes the unit circle.
+    /// Position on the arc where the multiplier numbered `order`, by falling modulus, passes the unit circle.
     fn passage(&self, analysis: &mut dyn Traceable, arc: &Arc<'_>, order: usize) -> Result<Option<Passage>> {
         let value = |verdict: &Verdict| verdict.growth(order, arc.without_positive);
         let (from, to) = (value(arc.verdicts.0).0, value(arc.verdicts.1).0);

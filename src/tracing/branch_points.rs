@@ -74,7 +74,7 @@ impl BranchTracer<'_> {
     }
 }
 
-/// The point between two close ones, with the direction of a longer arc.
+/// The point half way between two close ones, with the direction of a longer arc through `a` and `b`.
 fn halfway((low, high): (&Point, &Point), (a, b): (&Point, &Point)) -> Result<Point> {
     const CONTEXT: &str = "the branch points";
     let mut found = low.try_clone()?;

@@ -10,7 +10,7 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the special points";
 
-/// The end of a run.
+/// How a run ended: its status, and the error of a failed law.
 pub(crate) struct Ending {
     pub status: Status,
     /// The failure of a law that ended the run.
@@ -44,20 +44,25 @@ impl Ending {
 /// A special point, stored until the curve is complete.
 struct SpecialRecord<'a> {
     kind: SpecialKind,
-    /// Points of the curve before it.
+    /// Number of points of the curve before the special point.
     after: usize,
     resolution: &'a Resolution,
     omega: f64,
     motion: Vec<f64>,
     amplitude: Complex64,
     response: Vec<Complex64>,
-    residual: f64,
-    iterations: usize,
+    numbers: Accuracy,
     slip_fractions: Vec<f64>,
-    sampling_error: f64,
-    errors: (f64, f64),
     seen: Vec<SeenWithError>,
     mode: Option<ModePoint>,
+}
+
+/// How well a special point is solved.
+struct Accuracy {
+    residual: f64,
+    iterations: usize,
+    sampling_error: f64,
+    errors: (f64, f64),
 }
 
 /// Collects the points of one run.
@@ -65,11 +70,11 @@ pub(crate) struct BranchRecorder<'a> {
     branch: Box<Branch>,
     specials: Vec<SpecialRecord<'a>>,
     tolerance: f64,
-    /// Whether the error of some point misses the tolerance, and whether round-off stopped some residual above its
+    /// Whether the error of some point misses the tolerance; and whether round-off stopped some residual above its
     /// tolerance.
     missed: bool,
     stalled: bool,
-    /// Largest change of forces with half the samples.
+    /// Largest relative change of forces if half the samples are used, over all points so far.
     sampling_error: f64,
 }
 
@@ -99,17 +104,17 @@ impl<'a> BranchRecorder<'a> {
         }
     }
 
-    /// The recorded points.
+    /// The branch with the points recorded so far.
     pub fn branch(&self) -> &Branch {
         &self.branch
     }
 
-    /// The same, writable, for the data of a mode.
+    /// The branch with the points recorded so far, writable, for the data of a mode.
     pub fn branch_mut(&mut self) -> &mut Branch {
         &mut self.branch
     }
 
-    /// Notes the error that the tolerance bounds, NaN if unknown, of a point that is no fold.
+    /// Notes the error of a point that the tolerance bounds, NaN if unknown; not for folds.
     pub fn note_error(&mut self, error: f64) {
         let meets = matches!(
             error.partial_cmp(&self.tolerance),
@@ -118,7 +123,7 @@ impl<'a> BranchRecorder<'a> {
         self.missed |= self.tolerance > 0.0 && !meets;
     }
 
-    /// Notes the error of sampling of a point. An error that is not known misses the tolerance.
+    /// Notes the sampling error of a point. An unknown error misses the tolerance.
     fn note_sampling(&mut self, error: f64) {
         if self.tolerance > 0.0 {
             self.missed |= !matches!(
@@ -129,7 +134,8 @@ impl<'a> BranchRecorder<'a> {
         }
     }
 
-    /// Factor by which more samples meet the tolerance at the points so far, a power of two; 1: none are required.
+    /// Factor by which the samples must grow to meet the tolerance at the points so far, a power of two; 1: they
+    /// suffice.
     pub fn sampling_factor(&self) -> usize {
         if self.sampling_error <= largest_change(self.tolerance) {
             return 1;
@@ -170,18 +176,20 @@ impl<'a> BranchRecorder<'a> {
             motion: try_copy(record.motion, CONTEXT)?,
             amplitude: record.amplitude,
             response: try_copy(record.response, CONTEXT)?,
-            residual: record.residual,
-            iterations: record.iterations,
+            numbers: Accuracy {
+                residual: record.residual,
+                iterations: record.iterations,
+                sampling_error: record.sampling_error,
+                errors: record.errors,
+            },
             slip_fractions: try_copy(record.slip_fractions, CONTEXT)?,
-            sampling_error: record.sampling_error,
-            errors: record.errors,
             seen: try_copy(record.seen, CONTEXT)?,
             mode,
         };
         try_push(&mut self.specials, special, CONTEXT)
     }
 
-    /// The complete branch, its special points numbered after the curve.
+    /// Completes the branch: the special points are numbered after the curve.
     pub fn finish(mut self, ending: &Ending, reduction: Reduction, estimates: usize) -> Result<Box<Branch>> {
         for special in &self.specials {
             let seen = special.kind.response().and_then(|r| Some((r, special.seen.get(r)?)));
@@ -198,11 +206,11 @@ impl<'a> BranchRecorder<'a> {
                 motion: &special.motion,
                 amplitude: special.amplitude,
                 response: &special.response,
-                residual: special.residual,
-                iterations: special.iterations,
+                residual: special.numbers.residual,
+                iterations: special.numbers.iterations,
                 slip_fractions: &special.slip_fractions,
-                sampling_error: special.sampling_error,
-                errors: special.errors,
+                sampling_error: special.numbers.sampling_error,
+                errors: special.numbers.errors,
                 seen: &special.seen,
             };
             self.branch.push_special(special.kind, special.after, &record)?;

@@ -83,7 +83,7 @@ impl BranchTracer<'_> {
         }
     }
 
-    /// Sharpens and records a special point; `false` if it requires more harmonics, which are then selected.
+    /// Sharpens and records a special point; `false` if it requires more harmonics, which are then current.
     pub fn record_special(&mut self, analysis: &mut dyn Traceable, kind: SpecialKind, point: &Point) -> Result<bool> {
         let mut point = point.try_clone()?;
         analysis.sharpen(kind, &mut point)?;
@@ -108,7 +108,7 @@ impl BranchTracer<'_> {
         self.record_sharpened(analysis, kind, &point)
     }
 
-    /// A range of one point.
+    /// Records a range that is a single point.
     pub(super) fn record_single(&mut self, analysis: &mut dyn Traceable, point: &Point) -> Result<Status> {
         let end = self.course.settings.end;
         for (i, p) in self.course.at.iter().enumerate() {

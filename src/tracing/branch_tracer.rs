@@ -9,6 +9,7 @@ use crate::harmonics::discretised::Traceable;
 use crate::hooks::{Hooks, LogLevel, Progress};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
+use crate::options::Range;
 use crate::tracing::inner_ends::{InnerEnd, InnerEnds};
 use crate::tracing::resonance_bands::ResonanceBands;
 use crate::tracing::resonance_grid::LinearGrid;
@@ -30,18 +31,18 @@ const ONSET_SHARE: f64 = 0.25;
 /// The range to follow, and the solutions requested in it.
 pub(crate) struct Course<'a> {
     pub settings: Settings,
-    /// The whole range, of which `settings` may omit a part that needs no following.
-    pub range: (f64, f64),
+    /// The whole range. `settings` may leave out a part that needs no following.
+    pub range: Range,
     /// Parameter values of requested solutions.
     pub at: &'a [f64],
     pub max_points: usize,
-    /// Whether the run ends, to begin again, where more samples are required.
+    /// Whether the run ends, to start again with more samples, where these are required.
     pub may_refine: bool,
     /// Parameter value before the range up to which a branch that leaves at its start is followed, because it may
     /// come back; `None`: it is not followed.
     pub before: Option<f64>,
-    /// Highest harmonic of a first point that may be sought again with more of them, at the start of the range; `None`: it
-    /// may not.
+    /// Highest harmonic up to which the first point, at the start of the range, may be sought again with more
+    /// harmonics; `None`: it may not.
     pub starts_again: Option<usize>,
     /// Bounds of the steps where the branch is followed for its special points alone.
     pub bands: Option<ResonanceBands>,
@@ -49,21 +50,21 @@ pub(crate) struct Course<'a> {
     pub ends: Option<InnerEnds>,
 }
 
-/// Traces one branch.
+/// Traces one branch: predicts, corrects, refines and records its points.
 pub(crate) struct BranchTracer<'a> {
     pub(super) course: Course<'a>,
     pub(super) controller: AdaptivityController,
     pub(super) interrupt: &'a Interrupt<'a>,
-    /// Values of linear stretches, where they can be had, and whether they were requested.
+    /// Parameter values of linear stretches, if they could be computed; and whether they were requested.
     pub(super) linear_grid: Option<LinearGrid>,
     pub(super) grid_requested: bool,
-    /// The last solutions of the arc before, each with its resolution, where peaks of responses were sought on it.
+    /// Last solutions of the previous arc, each with its resolution, where peaks of responses were sought on it.
     pub(super) before_arc: Vec<(Point, usize)>,
-    /// Parameter value at which the curve came back to the one that it branches off from.
+    /// Parameter value at which the curve came back to the branch that it branches off from; NaN where it did not.
     merged_at: f64,
 }
 
-/// The end of a linear stretch.
+/// How a linear stretch ended.
 pub(super) enum Stretch {
     /// A contact leaves its linear state just beyond the point, which was recorded last, and has left it at `distance`
     /// from there. Before it lies a point of the stretch, unless that was where the stretch began.
@@ -72,24 +73,24 @@ pub(super) enum Stretch {
         point: Point,
         distance: f64,
     },
-    /// The end of the range, or its start, was reached at the point recorded last.
+    /// The stretch reached the end of the range, or its start, at the point recorded last.
     End(Point, Status),
-    /// The run ends.
+    /// The run ends, with this status.
     Stopped(Status),
 }
 
-/// Outcome for a branch that left its range at the start.
+/// Outcome of following a branch that left its range at the start.
 enum Outside {
-    /// It came back, after the folds that lie between these pairs of neighbours.
+    /// The branch came back at this point, after folds that lie between the given pairs of neighbours.
     Back(Point, Vec<(Point, Point)>),
-    /// It came back to its first point.
+    /// The branch closed at its first point.
     Closed,
     Gone,
 }
 
-/// Outcome for such a branch as far as it is recorded.
+/// Outcome of such an excursion for the recorded curve.
 enum Return {
-    /// It came back, and the point was recorded.
+    /// The branch came back, and this point was recorded.
     Recorded(Point),
     Ended(Status),
 }
@@ -108,22 +109,22 @@ impl<'a> BranchTracer<'a> {
         }
     }
 
-    /// The course.
+    /// The range to follow, and the solutions requested in it.
     pub fn course(&self) -> &Course<'a> {
         &self.course
     }
 
-    /// Parameter value at which the curve came back to the one that it branches off from; NaN where it did not.
+    /// Parameter value at which the curve came back to the branch that it branches off from; NaN where it did not.
     pub fn merged_at(&self) -> f64 {
         self.merged_at
     }
 
-    /// Error estimates made.
+    /// Number of error estimates made.
     pub fn estimates(&self) -> usize {
         self.controller.estimates()
     }
 
-    /// Records the first point of the curve, or the only one, and follows the branch from there.
+    /// Records the first point of the curve, or the only one, and follows the branch from this point.
     pub fn trace(&mut self, analysis: &mut dyn Traceable, first: Point, hooks: &mut Hooks<'_>) -> Result<Status> {
         let first = self.refine_first(analysis, first)?;
         analysis.record(&first)?;
@@ -281,8 +282,8 @@ impl<'a> BranchTracer<'a> {
         Ok(Return::Recorded(back))
     }
 
-    /// Reports the point recorded last to the caller; `true` if the caller stops the run, or it begins again with more
-    /// samples.
+    /// Reports the point recorded last to the caller; `true` if the run ends, because the caller stops it or it
+    /// starts again with more samples.
     pub fn report(&self, analysis: &dyn Traceable, hooks: &mut Hooks<'_>, point: &Point) -> bool {
         if self.course.may_refine && analysis.sampling_factor() > 1 {
             return true;
@@ -301,7 +302,7 @@ impl<'a> BranchTracer<'a> {
 
     /// Completed share of the range at a parameter value.
     fn fraction_done(&self, parameter: f64) -> f64 {
-        let (start, end) = self.course.range;
+        let Range { start, stop: end } = self.course.range;
         let range = end - start;
         if range == 0.0 {
             return 1.0;
@@ -309,8 +310,9 @@ impl<'a> BranchTracer<'a> {
         ((parameter - start) / range).clamp(0.0, 1.0)
     }
 
-    /// The next point, of the current resolution, with the status that ends the curve there: the first one where a curve that was
-    /// entered inside its range closes, none where it passed the branch that it branches off from.
+    /// The next point, of the current resolution, with the status that ends the curve at this point, if any. Where a
+    /// curve that was entered inside its range closes, the point is its first one; `None` where the curve passed the
+    /// branch that it branches off from.
     fn inner_end(
         &mut self,
         analysis: &mut dyn Traceable,
@@ -332,7 +334,7 @@ impl<'a> BranchTracer<'a> {
         )
     }
 
-    /// Whether a point found with other harmonics lies behind the one recorded last, or outside the range.
+    /// Whether a point found with other harmonics lies before the point recorded last, or outside the range.
     fn is_reversed_or_outside(
         &self,
         analysis: &dyn Traceable,
@@ -396,7 +398,7 @@ impl<'a> BranchTracer<'a> {
     }
 }
 
-/// Continues from a point, which has other harmonics than the one before if that is of a resolution `before`.
+/// Continues from a point. `before` is the resolution of the previous one if the harmonics have changed.
 fn go_on(
     analysis: &dyn Traceable,
     continuation: &mut Continuation,
@@ -412,8 +414,8 @@ fn go_on(
     continuation.go_on_from(previous, current)
 }
 
-/// An outcome; `None` if Newton's last correction, which is not evaluated, led to a motion that a law cannot
-/// evaluate.
+/// The value of an outcome; `None` if Newton's last correction, which is not evaluated, led to a motion that a law
+/// cannot evaluate.
 pub(super) fn some_unless_lost<T>(outcome: Result<T>) -> Result<Option<T>> {
     match outcome {
         Err(e) if e.status == Status::Singular || (e.recoverable && e.status != Status::Callback) => Ok(None),
@@ -421,7 +423,7 @@ pub(super) fn some_unless_lost<T>(outcome: Result<T>) -> Result<Option<T>> {
     }
 }
 
-/// Whether two solutions at one parameter value are one.
+/// Whether two solutions at one parameter value are equal to a relative difference of 1e-8.
 fn same(a: &[f64], b: &[f64]) -> bool {
     let difference = a.iter().zip(b).fold(0.0_f64, |d, (a, b)| d.hypot(a - b));
     difference <= 1e-8 * norm(b)

@@ -7,6 +7,7 @@ use crate::error::{Result, Status};
 use crate::harmonics::controller::Refined;
 use crate::harmonics::discretised::Traceable;
 use crate::interrupt::Phase;
+use crate::options::Range;
 use crate::tracing::branch_tracer::BranchTracer;
 
 /// Most starts, each with at least twice the harmonics of the one before.
@@ -26,7 +27,10 @@ const COLD_START_LEAST: usize = 40;
 impl BranchTracer<'_> {
     /// The first point with the harmonics that its error requires.
     pub(super) fn refine_first(&mut self, analysis: &mut dyn Traceable, first: Point) -> Result<Point> {
-        let (begin, end) = self.course.range;
+        let Range {
+            start: begin,
+            stop: end,
+        } = self.course.range;
         let is_curve = begin.to_bits() != end.to_bits();
         let first = if is_curve && analysis.linear_share(&first)? >= 1.0 {
             self.controller.begin_curve(analysis, first, self.interrupt)?

@@ -40,12 +40,12 @@ pub(crate) struct Dropped {
 }
 
 impl Dropped {
-    /// Whether a harmonic is one of them.
+    /// Whether a symmetric motion lacks this harmonic.
     pub fn has(self, number: usize) -> bool {
         number / self.base.max(1) % 2 == self.remainder
     }
 
-    /// Inner product of two packed motions in these harmonics.
+    /// Inner product of two packed motions, over the harmonics that a symmetric motion lacks.
     pub fn dot(self, set: &HarmonicSet, a: &[f64], b: &[f64]) -> f64 {
         let m = set.packed_len().max(1);
         let pairs = a.chunks_exact(m).zip(b.chunks_exact(m));
@@ -56,24 +56,24 @@ impl Dropped {
     }
 }
 
-/// An end of the curve.
+/// End of a curve that was entered inside its range.
 pub(crate) enum InnerEnd {
-    /// It closes at its first point, of the current resolution.
+    /// The curve closes at its first point, given in the current resolution.
     Closed(Point),
-    /// It passes the branch that it branches off from, at this parameter value.
+    /// The curve passes the branch that it branches off from, at this parameter value.
     Merged(f64),
 }
 
-/// Ends of one curve.
+/// Data by which the ends of one curve are found.
 pub(crate) struct InnerEnds {
-    /// Its first point, with the resolution.
+    /// First point of the curve, with its resolution.
     first: (Point, usize),
-    /// The harmonics that the branch does not have from which it branches off.
+    /// Harmonics that are zero on the branch from which the curve branches off; `None` if it branches off from none.
     dropped: Option<Dropped>,
 }
 
 impl InnerEnds {
-    /// The ends of a curve with this first point.
+    /// Prepares for the ends of a curve with this first point.
     pub fn new(first: &Point, resolution: usize, dropped: Option<Dropped>) -> Result<Self> {
         Ok(Self {
             first: (first.try_clone()?, resolution),
@@ -81,7 +81,7 @@ impl InnerEnds {
         })
     }
 
-    /// The end between the point recorded last and the next one, of the current resolution.
+    /// The end of the curve, if any, between the point recorded last and the next one, of the current resolution.
     pub fn between(
         &self,
         analysis: &mut dyn Traceable,
@@ -128,7 +128,7 @@ impl InnerEnds {
     }
 }
 
-/// Whether an arc passes a point in its direction.
+/// Whether an arc from `a` to `b` passes the point `first` in the direction of that point.
 fn passes(first: &Point, (a, b): (&Point, &Point), metric: Metric, n: usize) -> Result<bool> {
     let mut chord = try_vec(n + 1, 0.0, CONTEXT)?;
     let mut way = try_vec(n + 1, 0.0, CONTEXT)?;

@@ -11,14 +11,15 @@ use crate::continuation::{Point, PointAt};
 use crate::error::{Result, Status, try_push};
 use crate::harmonics::discretised::Traceable;
 use crate::hooks::{Hooks, LogLevel};
+use crate::options::Range;
 use crate::results::SpecialKind;
 use crate::tracing::branch_tracer::{BranchTracer, Stretch, some_unless_lost};
 use crate::tracing::resonance_grid::LinearGrid;
 
-/// The part of a stretch from a point to the next value.
+/// Outcome of the part of a stretch from a point to the next value.
 enum Next {
     Reached(Point),
-    /// The last point with linear contacts, and a value at which they are not linear.
+    /// The last point with linear contacts, and a parameter value beyond it at which some contact is not linear.
     Onset(Point, f64),
 }
 
@@ -59,7 +60,8 @@ const WIDENING: f64 = 100.0;
 const CONTEXT: &str = "the linear response";
 
 impl BranchTracer<'_> {
-    /// Follows the branch from the point recorded last, at which every contact is linear. `None` if the analysis cannot.
+    /// Follows the branch from the point recorded last, at which every contact is linear. `None` if the analysis has
+    /// no linear response.
     pub(super) fn follow_linear(
         &mut self,
         analysis: &mut dyn Traceable,
@@ -126,14 +128,14 @@ impl BranchTracer<'_> {
         }
     }
 
-    /// Places the values once for all stretches of a branch.
+    /// Computes the parameter values for all stretches of a branch, once.
     fn make_grid(&mut self, analysis: &mut dyn Traceable, hooks: &mut Hooks<'_>) -> Result<()> {
         if self.grid_requested {
             return Ok(());
         }
         self.grid_requested = true;
         let settings = self.course.settings;
-        let range = (settings.start.min(settings.end), settings.start.max(settings.end));
+        let range = Range::new(settings.start.min(settings.end), settings.start.max(settings.end));
         let Some(resonances) = analysis.resonances(range)? else {
             let reason = "natural frequencies are not known: linear contacts are followed like nonlinear ones";
             hooks.log(LogLevel::Info, reason);
@@ -194,7 +196,7 @@ impl BranchTracer<'_> {
         })
     }
 
-    /// Largest share of its linear range that a contact uses at a value; `None` if it leaves that.
+    /// Largest share of its linear range that a contact uses at a value; `None` if a contact leaves that range.
     fn share_at(&self, analysis: &mut dyn Traceable, here: &Point, value: f64) -> Result<Option<f64>> {
         match analysis.linear_at(here, value, self.interrupt)? {
             Some(point) => analysis.linear_share(&point).map(Some),
@@ -254,7 +256,7 @@ impl BranchTracer<'_> {
         Ok(())
     }
 
-    /// Records a special point, with the harmonics that it requires; the stretch goes on with its own.
+    /// Records a special point with the harmonics that it requires; the stretch continues with its own harmonics.
     fn record_on_line(&mut self, analysis: &mut dyn Traceable, kind: SpecialKind, mut point: Point) -> Result<()> {
         let own = analysis.resolution();
         let mut at = own;
@@ -271,8 +273,8 @@ impl BranchTracer<'_> {
         analysis.select(own)
     }
 
-    /// Records the maxima of the amplitude between two neighbours. Those of the cubic through both and their derivatives
-    /// tell where more than one lies between them, or one beside a minimum.
+    /// Records the maxima of the amplitude between two neighbours. The maxima of the cubic through both show where
+    /// there is more than one, or one beside a minimum.
     fn find_peaks(&mut self, analysis: &mut dyn Traceable, kind: SpecialKind, low: &Point, high: &Point) -> Result<()> {
         let ends = [low, high].map(|p| (p.parameter(), growth(p)));
         let [(from, begin), (to, end)] = ends;
@@ -360,7 +362,7 @@ impl BranchTracer<'_> {
         recorded
     }
 
-    /// The same near a good approximation, from a bracket around it that is widened until it holds the root.
+    /// Finds the maximum near a good approximation, from a bracket around it that is widened until it holds the root.
     fn stationary_near(
         &self,
         analysis: &mut dyn Traceable,
@@ -387,7 +389,7 @@ impl BranchTracer<'_> {
         Ok(None)
     }
 
-    /// A root of the derivative of the amplitude between two values.
+    /// A root of the amplitude's derivative between two values.
     fn stationary(
         &self,
         analysis: &mut dyn Traceable,
@@ -418,7 +420,7 @@ impl BranchTracer<'_> {
     }
 }
 
-/// ½ d|z|²/ds and |z|² at s of the cubic through two points of z and their derivatives.
+/// ½ d|z|²/ds and |z|² at s, for the cubic through two points of the amplitude z and their derivatives.
 fn predicted_growth(a: &Point, b: &Point, s: f64) -> (f64, f64) {
     let width = b.parameter() - a.parameter();
     let slope = |p: &Point| p.slope * (width / p.tangent[p.tangent.len() - 1]);
@@ -430,7 +432,7 @@ fn predicted_growth(a: &Point, b: &Point, s: f64) -> (f64, f64) {
     ((z.conj() * dz).re, z.norm_sqr())
 }
 
-/// The same of the amplitude whose peak is sought.
+/// d|z|/dp of the response whose peak is sought.
 fn growth_of(analysis: &mut dyn Traceable, kind: SpecialKind, point: &Point) -> Result<f64> {
     let resolution = analysis.resolution();
     Ok(match kind.response() {

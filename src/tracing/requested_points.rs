@@ -43,7 +43,7 @@ impl BranchTracer<'_> {
         Ok(())
     }
 
-    /// Solves at a requested value from the beginning, with the harmonics that the solution requires.
+    /// Solves at the i-th requested value p as for a first point, with the harmonics that the solution requires.
     fn start_at(&mut self, analysis: &mut dyn Traceable, i: usize, p: f64) -> Result<()> {
         let settings = Settings {
             start: p,

@@ -9,6 +9,7 @@ use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::model::natural_modes::linear_modes::ContactState;
+use crate::options::Range;
 
 /// Degrees of freedom up to which the natural frequencies cost less than the points that they save.
 /// Kind: tuned; measured on: not recorded.
@@ -22,7 +23,7 @@ const RESONANCE_BANDS_SHARE: f64 = 0.05;
 /// Kind: tuned; measured on: not recorded.
 const RESONANCE_BANDS_APPROACH: f64 = 0.5;
 
-/// The bands of the harmonics in which forces act.
+/// Bands of frequency in which the harmonics with forces may resonate.
 pub(crate) struct ResonanceBands {
     bands: Vec<(f64, f64)>,
     /// Change of the frequency in a step within a band.
@@ -30,12 +31,12 @@ pub(crate) struct ResonanceBands {
 }
 
 impl ResonanceBands {
-    /// The bands of a model whose forces act in the harmonics `forced`, for a sweep over `range`. Where natural frequencies
-    /// cannot be had, all frequencies are a band.
+    /// The bands of a model whose forces act in the harmonics `forced`, for a sweep over `range`. Where natural
+    /// frequencies cannot be computed, one band holds all frequencies.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
-    pub fn new(model: &Model, forced: &[usize], range: (f64, f64), interrupt: &Interrupt<'_>) -> Result<Self> {
+    pub fn new(model: &Model, forced: &[usize], range: Range, interrupt: &Interrupt<'_>) -> Result<Self> {
         let mut bands = Vec::new();
         let mut known = true;
         for (i, &h) in forced.iter().enumerate() {
@@ -63,7 +64,7 @@ impl ResonanceBands {
         }
         Ok(Self {
             bands,
-            within: RESONANCE_BANDS_SHARE * (range.1 - range.0).abs(),
+            within: RESONANCE_BANDS_SHARE * range.width(),
         })
     }
 
@@ -74,7 +75,7 @@ impl ResonanceBands {
         continuation.change_at_most(self.most_change(point.parameter(), rises));
     }
 
-    /// The largest change of the frequency from `omega` on, in the sense in which it rises or falls.
+    /// Largest change of the frequency that a step may make from `omega`; `rises`: towards higher frequencies.
     fn most_change(&self, omega: f64, rises: bool) -> f64 {
         let distance = |&(low, high): &(f64, f64)| match rises {
             true if omega <= high => Some(low - omega),
@@ -105,17 +106,17 @@ mod tests {
             .unwrap();
         model.add_contact(&Contact::jenkins(0, None, 3.0, 1.0, 1.0)).unwrap();
         let interrupt = Interrupt::none();
-        let bands = ResonanceBands::new(&model, &[0, 1, 1], (0.1, 8.1), &interrupt).unwrap();
+        let bands = ResonanceBands::new(&model, &[0, 1, 1], (0.1, 8.1).into(), &interrupt).unwrap();
         let close = |a: f64, b: f64| (a - b).abs() < 1e-12;
         assert!(close(bands.most_change(0.1, true), 0.45));
         assert!(close(bands.most_change(1.5, true), 0.4) && close(bands.most_change(1.5, false), 0.4));
         assert!(bands.most_change(2.1, true).is_infinite());
         assert!(close(bands.most_change(10.0, false), 4.0));
-        let second = ResonanceBands::new(&model, &[2], (0.1, 0.2), &interrupt).unwrap();
+        let second = ResonanceBands::new(&model, &[2], (0.1, 0.2).into(), &interrupt).unwrap();
         assert!(close(second.most_change(0.1, true), 0.2));
         // Too many degrees of freedom: short steps everywhere.
         let large = Model::new(MOST_DEGREES + 1).unwrap();
-        let bands = ResonanceBands::new(&large, &[1], (0.0, 1.0), &interrupt).unwrap();
+        let bands = ResonanceBands::new(&large, &[1], (0.0, 1.0).into(), &interrupt).unwrap();
         assert!(close(bands.most_change(0.7, false), 0.05));
     }
 }

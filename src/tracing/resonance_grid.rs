@@ -6,6 +6,7 @@
 
 use crate::error::{Result, try_push};
 use crate::model::natural_modes::resonances::Resonance;
+use crate::options::Range;
 
 /// Distances from a pole in half widths. Those of equidistant poles that overlap do not coincide.
 /// Kind: tuned; measured on: not recorded.
@@ -29,11 +30,11 @@ const RESONANCE_GRID_UNDAMPED: f64 = 1e-4;
 
 const CONTEXT: &str = "the frequencies of a linear response";
 
-/// Where the linear response is computed.
+/// Parameter values at which the linear response is computed.
 pub(crate) struct LinearGrid {
-    /// Parameter values, ascending.
+    /// Parameter values of the grid, ascending.
     values: Vec<f64>,
-    /// Undamped resonances, where the response is unbounded.
+    /// Parameter values of undamped resonances, where the response is unbounded.
     pub undamped: Vec<f64>,
 }
 
@@ -42,7 +43,7 @@ impl LinearGrid {
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(resonances: &[Resonance], range: (f64, f64)) -> Result<Self> {
+    pub fn new(resonances: &[Resonance], range: Range) -> Result<Self> {
         let mut undamped = Vec::new();
         for r in resonances.iter().filter(|r| r.is_undamped()) {
             try_push(&mut undamped, r.omega, CONTEXT)?;
@@ -53,7 +54,7 @@ impl LinearGrid {
         })
     }
 
-    /// The next value beyond another one, at a distance of at most `most`.
+    /// The next value of the grid after `value`, or a nearer one at the distance `most`.
     pub fn after(&self, value: f64, rising: bool, most: f64) -> Option<f64> {
         if rising {
             let next = self.values.partition_point(|&x| x <= value);
@@ -68,7 +69,8 @@ impl LinearGrid {
 ///
 /// # Errors
 /// `OutOfMemory`.
-fn values(resonances: &[Resonance], (low, high): (f64, f64)) -> Result<Vec<f64>> {
+fn values(resonances: &[Resonance], range: Range) -> Result<Vec<f64>> {
+    let (low, high) = (range.low(), range.high());
     let mut found = Vec::new();
     let mut add = |value: f64| {
         if value > low && value < high {
@@ -127,7 +129,7 @@ mod tests {
 
     #[test]
     fn the_distance_of_neighbours_has_a_bound_if_one_is_given() {
-        let grid = LinearGrid::new(&[], (0.0, 1.0)).unwrap();
+        let grid = LinearGrid::new(&[], (0.0, 1.0).into()).unwrap();
         for (most, count) in [(f64::INFINITY, BASE), (0.01, 3 * BASE)] {
             for rising in [true, false] {
                 let (mut at, end) = if rising { (0.0, 1.0) } else { (1.0, 0.0) };
@@ -154,12 +156,12 @@ mod tests {
                     }
                 })
                 .collect();
-            let range = (0.5, 1.5 + gap * f64::from(count));
+            let range = Range::new(0.5, 1.5 + gap * f64::from(count));
             let found = values(&poles, range).unwrap();
             assert!(found.len() <= 40 + 20 * poles.len(), "{}", found.len());
             assert!(found.windows(2).all(|w| w[0] < w[1]));
             let ends = [found[0], found[found.len() - 1]].map(f64::to_bits);
-            assert_eq!(ends, [range.0, range.1].map(f64::to_bits));
+            assert_eq!(ends, [range.start, range.stop].map(f64::to_bits));
             for pole in &poles {
                 let nearest = found.iter().map(|x| (x - pole.omega).abs());
                 assert!(nearest.fold(f64::INFINITY, f64::min) <= 1e-14);

@@ -50,17 +50,17 @@ const TELLS_BEND: f64 = 0.1;
 const MOST_PLACES: usize = 40;
 const MOST_KINKS: usize = 4;
 
-/// The solution at a share of an arc; `None` where there is none.
+/// A function that solves at a share of an arc; its result is `None` where there is no solution.
 type Between<'f, T> = dyn Fn(&mut T, &mut dyn Traceable, f64) -> Result<Option<Side>> + 'f;
 
-/// A solution on an arc of one response.
+/// A solution on an arc, as one response sees it.
 struct Side {
-    /// Share of the arc, by which it is solved for, and of its chord: the measure is a function of that.
+    /// Share of the arc, for which it is solved; and share of the chord, of which the measure is a function.
     s: f64,
     t: f64,
     point: Point,
     seen: Seen,
-    /// The share of the chord per tangent is the reciprocal of this.
+    /// Factor from slopes along the tangent to slopes over the share of the chord.
     unit: f64,
 }
 
@@ -69,7 +69,7 @@ impl Side {
         self.seen.slope * self.unit
     }
 
-    /// The unexplained change of an instant to another side, if both are smooth between them.
+    /// Change of an instant towards another solution that a smooth motion between them does not explain, at most π.
     fn mismatch(&self, other: &Side, which: usize) -> f64 {
         let rate = 0.5 * (self.seen.instant_rates[which] * self.unit + other.seen.instant_rates[which] * other.unit);
         let change = other.seen.instants[which] - self.seen.instants[which] - rate * (other.t - self.t);
@@ -81,7 +81,7 @@ impl Side {
     }
 }
 
-/// The measure near one side of a kink, as two solutions tell it.
+/// The measure near one side of a kink: the parabola through two solutions.
 struct Parabola {
     t: f64,
     value: f64,
@@ -107,7 +107,7 @@ impl Parabola {
     }
 }
 
-/// Where the two sides are equally large between two places, or the end that is next to it.
+/// Share of the chord between `low` and `high` where the two parabolas are equal, or the end next to it.
 fn meeting(sides: &(Parabola, Parabola), (mut low, mut high): (f64, f64)) -> f64 {
     let leads = |t: f64| sides.0.at(t) - sides.1.at(t);
     if leads(high) >= 0.0 {
@@ -125,7 +125,7 @@ fn meeting(sides: &(Parabola, Parabola), (mut low, mut high): (f64, f64)) -> f64
 }
 
 impl BranchTracer<'_> {
-    /// Records the kinks of all responses between two neighbours.
+    /// Records the kinks of all responses between two neighbouring points.
     pub(super) fn find_kinks_of_responses(
         &mut self,
         analysis: &mut dyn Traceable,
@@ -186,7 +186,7 @@ impl BranchTracer<'_> {
         Ok(())
     }
 
-    /// Records the first kink between two solutions that an instant's jump tells; returns the solution behind it.
+    /// Records the first kink between two solutions, where an instant jumps; returns the solution after it.
     fn find_kink<'s>(
         &mut self,
         analysis: &mut dyn Traceable,

@@ -49,7 +49,7 @@ impl BranchTracer<'_> {
         Ok(())
     }
 
-    /// Records the peaks of a kind between the ends of parts of an arc, whose solutions decide; whether there was one.
+    /// Records the peaks of one kind on parts of an arc, by solutions within them; returns whether a peak was found.
     fn find_peaks_within(
         &mut self,
         analysis: &mut dyn Traceable,
@@ -73,8 +73,8 @@ impl BranchTracer<'_> {
         Ok(any)
     }
 
-    /// Records the peaks of all further responses between two neighbours. Each that is found divides the arc for the next ones:
-    /// the responses of a structure have their peaks near each other.
+    /// Records the peaks of all further responses between two neighbours. Each peak found divides the arc for the
+    /// next responses: those of a structure have their peaks near each other.
     pub(super) fn find_peaks_of_responses(
         &mut self,
         analysis: &mut dyn Traceable,
@@ -113,8 +113,8 @@ impl BranchTracer<'_> {
         Ok(())
     }
 
-    /// Records the peaks of a further response between the solution `next` of an arc and the one before it, with the current
-    /// harmonics; returns the one, if it is one and has these.
+    /// Records the peaks of a further response between the solution `next` of an arc and the one before it, in the
+    /// current harmonics. Returns the peak, if there is exactly one and it has these harmonics.
     fn find_peaks_of(
         &mut self,
         analysis: &mut dyn Traceable,
@@ -161,7 +161,7 @@ impl BranchTracer<'_> {
         Ok(None)
     }
 
-    /// The solution at a share of an arc as a response sees it; the ends as they are.
+    /// The solution at a share of an arc as a response sees it; at shares 0 and 1 the ends are returned as they are.
     fn solved_between(
         &self,
         analysis: &mut dyn Traceable,
@@ -192,7 +192,7 @@ impl BranchTracer<'_> {
         })
     }
 
-    /// Shares of the arc between which the cubic has a maximum.
+    /// Brackets, as shares of the arc, in which the cubic has a maximum.
     fn predicted_brackets(&self, a: &Point, b: &Point) -> Result<Vec<(f64, f64)>> {
         let mut found = Vec::new();
         let size = norm(a.unknowns()).max(norm(b.unknowns()));
@@ -222,7 +222,7 @@ impl BranchTracer<'_> {
     }
 }
 
-/// A solution of some resolution with the current harmonics, as a response sees it.
+/// A solution of another resolution, transferred to the current harmonics, as a response sees it.
 fn seen_here(analysis: &mut dyn Traceable, response: usize, (point, of): &(Point, usize)) -> Result<Point> {
     let seen = analysis.seen_by(response, (point, *of))?;
     analysis.transfer(&seen, *of)

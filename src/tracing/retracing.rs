@@ -38,12 +38,12 @@ const RETRACING_BISECTIONS: usize = 50;
 pub(super) struct RecentPoints {
     before: Vec<(Point, usize)>,
     last: (Point, usize),
-    /// Whether the branch was turned round at the last one.
+    /// Whether the branch was turned round at the last point.
     turned: bool,
 }
 
 impl RecentPoints {
-    /// Begins at a recorded point, with the continuation from there.
+    /// Begins at a recorded point; also returns a continuation from this point.
     pub fn begin(settings: Settings, point: Point, resolution: usize) -> Result<(Self, Continuation)> {
         let continuation = Continuation::new(settings, point)?.leaving_surfaces();
         let recent = Self {
@@ -71,8 +71,8 @@ impl RecentPoints {
         try_push(&mut self.before, before, CONTEXT)
     }
 
-    /// Goes on at the end of a linear stretch, with the point before it in that stretch; none where the stretch ends at
-    /// the last point.
+    /// Continues at the end of a linear stretch, with the point before it in that stretch; `None` where the stretch
+    /// ends at the last point.
     pub fn go_on(&mut self, (before, point): (Option<&Point>, &Point), resolution: usize) -> Result<()> {
         let Some(before) = before else {
             self.last = (point.try_clone()?, resolution);
@@ -84,8 +84,8 @@ impl RecentPoints {
         Ok(())
     }
 
-    /// Whether a solution of the current resolution, found after the last point, lies on the curve through the points;
-    /// and whether the problem was evaluated elsewhere to decide that.
+    /// Whether a solution of the current resolution, found after the last point, lies on the curve through the stored
+    /// points; and whether the problem was evaluated elsewhere to decide that.
     fn hold(
         &self,
         analysis: &mut dyn Traceable,
@@ -133,8 +133,8 @@ impl RecentPoints {
         Ok((metric.distance(&found.v, &point.v) <= same * step, true))
     }
 
-    /// The point from which the branch went back, of the current resolution, with its sense corrected: away from the
-    /// point recorded before the last one. `None` where its sense was that already, or is not found.
+    /// The last point, in the current resolution, with its sense corrected to lead away from the point before it.
+    /// `None` where its sense was right, or is not found.
     fn turned_round(
         &self,
         analysis: &mut dyn Traceable,
@@ -160,8 +160,8 @@ impl RecentPoints {
         Ok(Some(turned))
     }
 
-    /// The point, unless it lies on the curve recorded so far: then the branch goes on in the other sense from the point
-    /// before.
+    /// The given point, unless it lies on the curve recorded so far: then the branch continues in the other sense
+    /// from the point before.
     pub fn mend(
         &mut self,
         analysis: &mut dyn Traceable,
@@ -197,7 +197,7 @@ impl RecentPoints {
     }
 }
 
-/// The cubic through two points at a parameter value between theirs.
+/// The point on the cubic through `a` and `b` at a parameter value between theirs.
 fn on_cubic(a: &Point, b: &Point, metric: Metric, p: f64) -> Result<Vec<f64>> {
     let cubic = Cubic::new(a, b, metric);
     let mut v = try_vec(a.v.len(), 0.0, CONTEXT)?;
@@ -218,7 +218,7 @@ fn on_cubic(a: &Point, b: &Point, metric: Metric, p: f64) -> Result<Vec<f64>> {
     Ok(v)
 }
 
-/// The end of a branch that could not be turned round.
+/// The error for a branch that could not be turned round.
 fn came_back(parameter: f64) -> Error {
     Error::new(
         Status::NoConvergence,

@@ -156,8 +156,7 @@ fn closed_contacts_that_stick_drop_out_and_the_jacobian_is_that_of_differences()
     let condensed = Condensed::new(&model, &solver, omega, &Interrupt::none()).unwrap();
     assert_eq!(condensed.reference(), Reference::Stuck);
     let interrupt = Interrupt::none();
-    let mut problem =
-        HarmonicBalance::new(&condensed, beam.tips()[0] + Z, (omega, omega), 0, None, &interrupt).unwrap();
+    let mut problem = HarmonicBalance::new(&condensed, beam.tips()[0] + Z, omega.into(), 0, None, &interrupt).unwrap();
     let n = problem.size();
     let m = n / condensed.coordinates();
     let mut u = vec![0.0; n];

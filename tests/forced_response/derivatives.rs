@@ -357,7 +357,7 @@ proptest! {
         let model = random_model(shape, speed, engine_order, &mut feed);
         let (condensed, play, u, direction) = condensed_case(&model, highest, omega, keep_even, &mut feed);
         let interrupt = Interrupt::none();
-        let mut problem = HarmonicBalance::new(&condensed, response, (1.0, 1.0), 0, None, &interrupt).unwrap();
+        let mut problem = HarmonicBalance::new(&condensed, response, (1.0, 1.0).into(), 0, None, &interrupt).unwrap();
         check_problem(&mut problem, &Condensation { u, p: omega, direction }, play)?;
     }
 
@@ -380,7 +380,7 @@ proptest! {
         }
         let (condensed, play, u, direction) = condensed_case(&model, highest, omega, keep_even, &mut feed);
         let interrupt = Interrupt::none();
-        let mut problem = HarmonicBalance::new(&condensed, 0, (1.0, 1.0), 0, None, &interrupt).unwrap();
+        let mut problem = HarmonicBalance::new(&condensed, 0, (1.0, 1.0).into(), 0, None, &interrupt).unwrap();
         let mut stuck = vec![0.0; u.len()];
         prop_assert!(problem.initial_guess(InitialGuess::Stuck, omega, &mut stuck).unwrap() != preloaded);
         // The stuck motion must slip for a homotopy to exist; a larger one always does.

@@ -308,7 +308,7 @@ fn with_many_contacts_the_stuck_start_is_the_structure_on_linear_springs() {
     let (condensed, _) = start(0.3);
     assert_eq!(condensed.reference(), Reference::Stuck);
     let interrupt = Interrupt::none();
-    let mut problem = HarmonicBalance::new(&condensed, 0, (0.8, 0.8), 0, None, &interrupt).unwrap();
+    let mut problem = HarmonicBalance::new(&condensed, 0, (0.8, 0.8).into(), 0, None, &interrupt).unwrap();
     let mut u = vec![0.0; problem.unknowns()];
     assert!(problem.initial_guess(InitialGuess::Stuck, 0.8, &mut u).unwrap());
     let (linear, model) = start(0.0);

@@ -243,7 +243,7 @@ fn every_derivative_by_a_frequency_that_sets_the_speed_is_that_of_differences() 
             // The condensed one, which Newton's method solves.
             let condensed = Condensed::new(&model, &solver, omega, &Interrupt::none()).unwrap();
             let interrupt = Interrupt::none();
-            let mut problem = HarmonicBalance::new(&condensed, 0, (1.0, 1.5), 0, None, &interrupt).unwrap();
+            let mut problem = HarmonicBalance::new(&condensed, 0, (1.0, 1.5).into(), 0, None, &interrupt).unwrap();
             let n = problem.unknowns();
             let scale = 1.0 / condensed.length();
             let u: Vec<f64> = (0..n).map(|i| scale * random(3 * i)).collect();

@@ -5,6 +5,7 @@ mod language;
 mod layering;
 mod python;
 mod rust_interface;
+mod sizes;
 mod supply;
 mod thresholds;
 

@@ -13,7 +13,7 @@ use std::collections::TryReserveError;
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
-    /// Done.
+    /// Success: the call has done all of its work.
     Ok = 0,
     /// A progress hook or the cancel flag requested the stop; the points found so far are kept.
     StoppedByCaller = 1,
@@ -156,7 +156,7 @@ impl Status {
         }
     }
 
-    /// All values, for tables and for the conversion of an integer into a status.
+    /// All statuses, for tables and for the conversion of an integer into a status.
     pub const ALL: [Self; 30] = [
         Self::Ok,
         Self::StoppedByCaller,
@@ -203,13 +203,13 @@ pub struct Text {
 }
 
 impl Text {
-    /// The empty text.
+    /// The empty sentence.
     pub const EMPTY: Self = Self {
         bytes: [0; TEXT_CAPACITY],
         len: 0,
     };
 
-    /// The sentence.
+    /// The sentence as text.
     #[must_use]
     pub fn as_str(&self) -> &str {
         core::str::from_utf8(&self.bytes[..self.len]).unwrap_or("")
@@ -230,21 +230,21 @@ impl fmt::Write for Text {
 
 /// A failure: its kind, its place and its remedy.
 pub struct Error {
-    /// The kind of failure: negative, or `StoppedByCaller` on its way to the analysis that ends with it.
+    /// Kind of failure: negative, or `StoppedByCaller` on its way to the analysis that ends with it.
     pub status: Status,
-    /// Number of the offending argument of the C function, counted from 1; 0 if none.
+    /// Index of the offending argument of the C function, counted from 1; 0 if none.
     pub argument: i32,
     /// Code that a callback of the caller returned; 0 if none did.
     pub callback: i32,
-    /// The same call may succeed at another motion: a callback reported so, or its numbers were not finite. A
+    /// Whether the call may succeed at another motion: a callback reported so, or its numbers were not finite. A
     /// solver then tries a smaller step before it fails.
     pub recoverable: bool,
-    /// Nothing was allocated: the counted size exceeds the limit that the caller has set.
+    /// Whether nothing was allocated because the counted size exceeds the limit that the caller has set.
     pub beyond_limit: bool,
     text: Cow<'static, str>,
 }
 
-/// Sentence of an error for whose own there is no memory.
+/// Fixed sentence for an error when there is no memory for its own.
 const NO_MEMORY: &str = "no memory; reduce the size of the problem";
 
 impl Error {
@@ -281,28 +281,28 @@ impl Error {
         }
     }
 
-    /// The same error, marked as one that may not occur at another motion.
+    /// Marks the error as one that may not occur at another motion.
     #[must_use]
     pub fn recoverable(mut self) -> Self {
         self.recoverable = true;
         self
     }
 
-    /// The same error, marked as a refusal before anything was allocated.
+    /// Marks the error as a refusal before anything was allocated.
     #[must_use]
     pub fn beyond_limit(mut self) -> Self {
         self.beyond_limit = true;
         self
     }
 
-    /// The same error, attributed to argument number `argument` (from 1) of the C function.
+    /// Attributes the error to argument number `argument` (from 1) of the C function.
     #[must_use]
     pub fn in_argument(mut self, argument: i32) -> Self {
         self.argument = argument;
         self
     }
 
-    /// The same error with `place` and a colon in front of its sentence.
+    /// Puts `place` and a colon in front of the sentence of the error.
     #[must_use]
     pub fn at(self, place: fmt::Arguments<'_>) -> Self {
         let placed = Self::new(self.status, format_args!("{place}: {}", self.text));
@@ -322,7 +322,7 @@ impl Error {
         )
     }
 
-    /// The sentence.
+    /// The sentence of the error.
     #[must_use]
     pub fn message(&self) -> &str {
         &self.text
@@ -392,7 +392,7 @@ pub fn try_vec<T: Clone>(len: usize, value: T, what: &str) -> Result<Vec<T>> {
     Ok(v)
 }
 
-/// The outcome of a reservation, an error also where the one before it was served from the reserve of the allocator.
+/// Outcome of a request for memory: an error also if the last request was served from the reserve of the allocator.
 ///
 /// # Errors
 /// [`Status::OutOfMemory`] naming `what`.
@@ -433,8 +433,8 @@ pub fn try_copy<T: Copy>(values: &[T], what: &str) -> Result<Vec<T>> {
     Ok(v)
 }
 
-/// A value in a box. A function of its own, so that the parts of a large value take their share of a small stack one after
-/// the other.
+/// Makes a value and moves it into a box. It is a function of its own so that the parts of a large value use a small
+/// stack one after the other.
 ///
 /// # Errors
 /// Those of `make`.

@@ -23,20 +23,20 @@ pub enum Phase {
     Continuation = 4,
     /// Error estimate of a point.
     Estimate = 5,
-    /// Integration in time.
+    /// Integration of motions in time.
     TimeIntegration = 6,
     /// Harmonics, energies and other results of solved motions.
     Results = 7,
-    /// One factorisation of a sparse matrix by a library that cannot be stopped.
+    /// A single factorisation of a sparse matrix, by a library that cannot be stopped.
     Factorisation = 8,
 }
 
 /// The phase of a running call and its completed share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhaseReport {
-    /// The phase.
+    /// Phase of the call.
     pub phase: Phase,
-    /// Its completed share, 0 to 1; it starts again with each phase.
+    /// Completed share of the phase, 0 to 1; it starts again with each phase.
     pub share: f64,
 }
 
@@ -67,9 +67,9 @@ pub struct Interrupt<'a> {
     stopped: Cell<bool>,
     current: Cell<PhaseReport>,
     checks: Cell<u64>,
-    /// Most operations between two checks.
+    /// Largest number of operations between two checks so far.
     largest: Cell<u64>,
-    /// Operations since the last report.
+    /// Number of operations since the last report.
     work: Cell<u64>,
 }
 
@@ -108,7 +108,7 @@ impl<'a> Interrupt<'a> {
         self.check_before(OF_ONE_CHECK)
     }
 
-    /// Checks before about this number of operations, which no check interrupts.
+    /// Checks for a stop before about this many operations, during which there is no check.
     ///
     /// # Errors
     /// `StoppedByCaller`; `OutOfMemory` where a request was served from the reserve of the allocator.
@@ -130,14 +130,14 @@ impl<'a> Interrupt<'a> {
         self.report(self.current.get())
     }
 
-    /// Whether a check has failed: the call is on its way back.
+    /// Whether a check has failed: the call must then return.
     #[must_use]
     #[inline]
     pub fn is_stopped(&self) -> bool {
         self.stopped.get()
     }
 
-    /// Largest number of operations that no check interrupted.
+    /// Largest number of operations so far without a check.
     #[must_use]
     #[inline]
     pub fn largest(&self) -> u64 {
@@ -151,8 +151,8 @@ impl<'a> Interrupt<'a> {
         self.checks.get()
     }
 
-    /// Checks, and reports the phase with its completed share: at its begin, whenever the share has grown by a hundredth,
-    /// and after some ten million operations.
+    /// Checks for a stop, and reports the phase with its completed share: at its beginning, whenever the share has
+    /// grown by a hundredth, and after some ten million operations.
     ///
     /// # Errors
     /// `StoppedByCaller`.
@@ -166,7 +166,7 @@ impl<'a> Interrupt<'a> {
         self.report(PhaseReport { phase, share })
     }
 
-    /// The same, `done` of `all` parts being complete.
+    /// Checks for a stop and reports the phase, with `done` of `all` parts complete.
     ///
     /// # Errors
     /// `StoppedByCaller`.
@@ -175,7 +175,7 @@ impl<'a> Interrupt<'a> {
         self.phase(phase, done as f64 / all.max(1) as f64)
     }
 
-    /// Announces a factorisation that cannot be stopped, before it starts. The phase so far continues after it.
+    /// Announces a factorisation that cannot be stopped, before it starts. The current phase continues after it.
     ///
     /// # Errors
     /// `StoppedByCaller`.
@@ -191,7 +191,8 @@ impl<'a> Interrupt<'a> {
         told
     }
 
-    /// Memory for a large array of zeros, which the system maps when they are written: checked between its parts.
+    /// A large array of zeros, which the system maps to memory as they are written, with checks for a stop between
+    /// its parts.
     ///
     /// # Errors
     /// `OutOfMemory` naming `what`, `StoppedByCaller`.

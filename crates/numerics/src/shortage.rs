@@ -11,14 +11,14 @@ thread_local! {
     static NOTED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Makes the note.
+/// Notes a shortage of memory.
 #[cold]
 pub fn note() {
     // A thread that is being torn down makes no call any more.
     let _ = NOTED.try_with(|noted| noted.set(true));
 }
 
-/// Whether the note was made since the begin of the call.
+/// Whether a shortage was noted since the beginning of the call.
 #[must_use]
 #[inline]
 pub fn is_noted() -> bool {

@@ -44,7 +44,7 @@ pub struct PlaneFrictionEvaluator {
     spectra: [Vec<Complex64>; 3],
     toeplitz: Toeplitz,
     g: Vec<f64>,
-    /// None where the force alone is evaluated.
+    /// Memory for derivatives; `None` where the force alone is evaluated.
     sensitivity: Option<Box<PlaneSensitivity>>,
 }
 
@@ -57,7 +57,7 @@ impl PlaneFrictionEvaluator {
         Self::with(set, law, false)
     }
 
-    /// The same for the force alone.
+    /// Memory for the force alone.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -94,7 +94,8 @@ impl PlaneFrictionEvaluator {
         &self.path
     }
 
-    /// Force and Jacobian of `law` at packed motions x₁, x₂ and, if the law has it, y.
+    /// Force and Jacobian of `law` at packed tangential motions x₁, x₂ and, if the law has a varying load, the normal
+    /// motion y.
     ///
     /// # Errors
     /// `NoConvergence` for a motion whose path cannot be followed; `StoppedByCaller`.
@@ -197,7 +198,7 @@ impl PlaneFrictionEvaluator {
     }
 }
 
-/// Adds (1/turn)∫ eᵢ e^{−inτ} dτ over a piece of slip.
+/// Adds the transform (1/turn)∫ eᵢ e^{−inτ} dτ of both components of the slip direction over a piece of slip.
 fn add_directions(path: &PlanePath, piece: &PlanePiece, first: &mut [Complex64], second: &mut [Complex64]) {
     let PlaneForce::Slip(panel) = &piece.force else {
         return;

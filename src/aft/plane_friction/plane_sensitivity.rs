@@ -19,11 +19,11 @@ const CONTEXT: &str = "the derivatives of friction in a plane";
 /// Quantity whose derivative is carried from piece to piece.
 #[derive(Clone, Copy, PartialEq)]
 enum Carried {
-    /// None: no force.
+    /// No quantity: there is no force.
     Nothing,
-    /// f − u, in `rows`.
+    /// f − u of a stick, in `rows`.
     Anchor,
-    /// θ, in `angle`.
+    /// Angle θ of the slip direction, in `angle`.
     Angle,
 }
 
@@ -36,13 +36,13 @@ pub(super) struct PlaneSensitivity {
     angle: Vec<f64>,
     transform: Vec<Complex64>,
     g: Vec<f64>,
-    /// Basis and its derivative at a time.
+    /// Fourier basis and its derivative at one time.
     basis: Vec<f64>,
     slope: Vec<f64>,
-    /// Derivatives of the angle at the start of the panels of `session`.
+    /// Derivatives of the slip angle at the start of the panels in `session`.
     first_angle: Vec<f64>,
     session: SlipSession,
-    /// Columns of the Jacobian by the force at the start.
+    /// Columns of the Jacobian by the two components of the force at the start.
     by_start: Vec<f64>,
 }
 
@@ -111,7 +111,7 @@ impl PlaneSensitivity {
         Ok(())
     }
 
-    /// Derivatives of the force at the start of the turn.
+    /// Sets the derivatives of the force at the start of the turn.
     fn begin(&mut self, law: &dyn PlaneFriction, path: &PlanePath, start: f64) {
         let m = self.set.packed_len();
         let (kt, [_, by_y]) = (law.stiffness(), law.limit());
@@ -161,7 +161,7 @@ impl PlaneSensitivity {
         }
     }
 
-    /// Derivatives of f − u from the begin of a stick on.
+    /// Sets the derivatives of f − u at the beginning of a stick, which keep their values during it.
     fn begin_stick(&mut self, law: &dyn PlaneFriction, path: &PlanePath, piece: &PlanePiece) {
         let m = self.set.packed_len();
         let (kt, [_, by_y]) = (law.stiffness(), law.limit());
@@ -199,7 +199,7 @@ impl PlaneSensitivity {
         self.carried = Carried::Anchor;
     }
 
-    /// Derivatives of the angle at the begin of slip.
+    /// Sets the derivatives of the slip angle at the beginning of slip.
     fn begin_slip(&mut self, law: &dyn PlaneFriction, path: &PlanePath, piece: &PlanePiece, panel: &SlipPanel) {
         let m = self.set.packed_len();
         let (kt, [_, by_y]) = (law.stiffness(), law.limit());
@@ -236,7 +236,7 @@ impl PlaneSensitivity {
         self.carried = Carried::Angle;
     }
 
-    /// Adds g ⊗ δ(f − u).
+    /// Adds the product g ⊗ δ(f − u) of a stick to the Jacobian.
     fn add_stick(&mut self, turn: f64, piece: &PlanePiece, out: &mut Evaluation) {
         let m = self.set.packed_len();
         transform([piece.start, piece.end], turn.recip(), turn, &mut self.transform);
@@ -254,7 +254,7 @@ impl PlaneSensitivity {
         }
     }
 
-    /// Adds the panels of slip that were collected.
+    /// Adds the collected panels of slip to the Jacobian.
     fn add_session(&mut self, out: &mut Evaluation, interrupt: &Interrupt<'_>) -> Result<()> {
         if self.session.is_empty() {
             return Ok(());
@@ -274,7 +274,7 @@ impl PlaneSensitivity {
         Ok(())
     }
 
-    /// Adds the derivatives of the force at the start, which returns at the end.
+    /// Adds the effect of the force at the start, which returns at the end of the turn.
     fn close(&mut self, law: &dyn PlaneFriction, path: &PlanePath, end: f64, out: &mut Evaluation) {
         let m = self.set.packed_len();
         let (kt, [_, by_y]) = (law.stiffness(), law.limit());

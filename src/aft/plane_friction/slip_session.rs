@@ -30,19 +30,19 @@ const CONTEXT: &str = "the derivatives of friction in a plane";
 /// The last row of G, and the last number of s, of a panel.
 type AtEnd = ([f64; RADAU_STAGES], f64);
 
-/// Panels of slip that follow each other.
+/// Successive panels of one slip.
 pub(super) struct SlipSession {
     set: HarmonicSet,
     directions: usize,
     panels: usize,
-    /// V G, column after column of 2m numbers a node.
+    /// Weights V G, column after column, 2m numbers for each node.
     weights: Vec<f64>,
-    /// E, row after row of d·m numbers a node.
+    /// Derivatives E of the rates θ′, row after row, d·m numbers for each node.
     rates: Vec<f64>,
-    /// V s of each panel.
+    /// Sensitivities V s by the angle at the start, of each panel.
     by_angle: Vec<f64>,
     at_end: [AtEnd; PANELS],
-    /// λ
+    /// Row λ: derivative of the remaining force harmonics by the angle.
     behind: Vec<f64>,
     basis: Vec<f64>,
     slope: Vec<f64>,
@@ -153,7 +153,7 @@ impl SlipSession {
         Ok(())
     }
 
-    /// G, column after column, and s.
+    /// Solves for G, column after column, and s of a panel.
     fn stages(
         &mut self,
         panel: &SlipPanel,
@@ -179,7 +179,7 @@ impl SlipSession {
         Ok((g, s))
     }
 
-    /// Adds the panels to a Jacobian over all motions, and returns λ of the first angle.
+    /// Adds the panels to a Jacobian over all motions, and returns λ, the derivative by the angle at the start.
     pub fn add_to(&mut self, jacobian: &mut [f64], interrupt: &Interrupt<'_>) -> Result<&[f64]> {
         let (m, d) = (self.set.packed_len(), self.directions);
         self.behind.fill(0.0);
@@ -211,14 +211,14 @@ impl SlipSession {
     }
 }
 
-/// out += factor·x over the length of x.
+/// out ← out + factor·x over the length of x.
 pub(super) fn add(out: &mut [f64], factor: f64, x: &[f64]) {
     for (o, x) in out.iter_mut().zip(x) {
         *o += factor * x;
     }
 }
 
-/// The derivative by τ of the basis: of (cos pτ, −sin pτ).
+/// Derivative of the Fourier basis (cos pτ, −sin pτ) by τ.
 pub(super) fn differentiate(set: &HarmonicSet, basis: &[f64], slope: &mut [f64]) {
     let mean = usize::from(set.has_mean());
     slope[..mean].fill(0.0);

@@ -24,7 +24,7 @@ const COARSE_START_AT_ONCE: usize = 12;
 /// Kind: tuned; measured on: not recorded.
 const COARSE_START_LARGE: usize = 1000;
 
-/// Bound of a homotopy with few harmonics.
+/// Bounds on points and iterations of a homotopy with few harmonics.
 const EFFORT: Effort = Effort {
     points: 200,
     iterations: usize::MAX,
@@ -38,7 +38,7 @@ const MUCH_SLIP: f64 = 0.5;
 pub(crate) struct CoarseStart {
     condensed: Condensed,
     v: Vec<f64>,
-    /// Newton iterations of all numbers of harmonics so far.
+    /// Newton iterations so far, over all numbers of harmonics.
     iterations: usize,
 }
 
@@ -74,7 +74,7 @@ impl CoarseStart {
             let condensed = Condensed::new(model, &options, settings.start, interrupt)?;
             let given = found.as_ref().map(|below| below.at(&condensed)).transpose()?;
             let is_transferred = given.is_some();
-            let at = (settings.start, settings.start);
+            let at = settings.start.into();
             let mut problem = HarmonicBalance::new(&condensed, response, at, solver.samples, given, interrupt)?;
             let first = match initial_point::solve_within(&mut problem, settings, EFFORT, interrupt) {
                 Ok(first) => first,
@@ -98,7 +98,7 @@ impl CoarseStart {
         Ok(found)
     }
 
-    /// Counts the iterations among those of the first point, and tells the way to it.
+    /// Adds the iterations to those of the first point, and sets the method that found it.
     pub fn count(&self, first: &mut Point, way: &mut Way) {
         first.iterations += self.iterations;
         if *way == Way::Newton(InitialGuess::Given) {
@@ -106,7 +106,7 @@ impl CoarseStart {
         }
     }
 
-    /// The packed motion in the harmonics of `to`.
+    /// The packed motion of the solution in the harmonics of `to`.
     ///
     /// # Errors
     /// `OutOfMemory`.

@@ -19,11 +19,11 @@ const DEFLATION_STARTS: [f64; 4] = [1.5, 3.0, 8.0, -2.0];
 /// Kind: cap.
 const DEFLATION_MOST_KNOWN: usize = 4;
 
-/// Solutions that are led away from the known ones.
+/// Search for solutions away from known ones.
 pub(crate) struct Deflation;
 
 impl Deflation {
-    /// The first solution at the frequency of the start, near which a known one lies, that lies on no known branch.
+    /// The first solution on no known branch, at the frequency of a start near a known solution.
     ///
     /// # Errors
     /// Those of the problem.
@@ -61,7 +61,8 @@ impl Deflation {
         Ok(None)
     }
 
-    /// The first solution from a start that lies on no known branch; the known ones are left out as they are found.
+    /// The first solution from a start that lies on no known branch. Known solutions that Newton's method finds are
+    /// added to those left out.
     fn beside(
         response: &mut ForcedDiscretised<'_>,
         (start, left_out): (&Point, &mut Vec<Vec<f64>>),

@@ -10,6 +10,7 @@ use crate::harmonics::Solved;
 use crate::harmonics::forced_response_error::ForcedEstimator;
 use crate::interrupt::Interrupt;
 use crate::model::Model;
+use crate::options::Range;
 use crate::options::SolverOptions;
 use crate::results::Recovery;
 use num_complex::Complex64;
@@ -24,20 +25,20 @@ const STATES_FOR_EACH: usize = 2;
 pub(crate) struct FineMotion<'a> {
     estimator: Box<ForcedEstimator<'a>>,
     models: &'a ModelCache,
-    /// Displacements and velocities in time.
+    /// Number of displacements and velocities in time.
     states: usize,
     interrupt: &'a Interrupt<'a>,
 }
 
 impl<'a> FineMotion<'a> {
-    /// For points of `model` in a range of frequencies, with the caches of estimates.
+    /// Prepares for points of `model` in a range of frequencies, with the caches of the estimates.
     ///
     /// # Errors
     /// `OutOfMemory`.
     pub fn new(
         model: &'a Model,
         solver: &SolverOptions,
-        (response, range): (usize, (f64, f64)),
+        (response, range): (usize, Range),
         (models, waves): (&'a ModelCache, &'a SharedWaves),
         interrupt: &'a Interrupt<'a>,
     ) -> Result<Self> {
@@ -50,8 +51,8 @@ impl<'a> FineMotion<'a> {
         })
     }
 
-    /// The harmonics of all degrees of freedom of a point after its correction; `None` where that is not certified, or does
-    /// not pay.
+    /// The harmonics of all degrees of freedom at a point, with the correction of an error estimate; `None` where the
+    /// estimate is not certified, or does not pay.
     ///
     /// # Errors
     /// Those of callbacks; `OutOfMemory`, `StoppedByCaller`.

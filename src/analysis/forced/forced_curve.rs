@@ -22,6 +22,7 @@ use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
 use crate::model::Model;
+use crate::options::Range;
 use crate::options::{Content, Exchanged, ForcedOptions, Response, SolverOptions, check_highest, check_responses};
 use crate::problem::InitialGuess;
 use crate::results::{Branch, Descent};
@@ -34,7 +35,7 @@ use num_complex::Complex64;
 /// Size of a first motion, over that under linear contacts, above which its bound is checked.
 const LARGE: f64 = 1e6;
 
-/// The curve from the start of the range.
+/// The curve of a forced response from the start of the range.
 ///
 /// # Errors
 /// As [`crate::analysis::forced_response()`].
@@ -47,8 +48,8 @@ pub(crate) fn alone(
     with_detail(model, solver, range, (Detail::Curve, None), (None, hooks))
 }
 
-/// The curve that is entered inside the range near the guess, and the harmonics that the branch does not have which it leaves. Where
-/// it comes back to that branch, its descent has the frequency. `None`: it is known.
+/// The curve that is entered inside the range near the guess; and the harmonics that it has but the branch that it
+/// leaves has not. Where it comes back to that branch, its descent holds the frequency. `None`: the curve is known.
 ///
 /// # Errors
 /// As [`crate::analysis::forced_response()`].
@@ -68,8 +69,8 @@ pub(crate) fn forced_from_inside(
     }
 }
 
-/// The same for its special points alone, which are as exact as those of [`alone`]. The points between are fewer and
-/// less exact: they do not draw the curve.
+/// The curve followed for its special points alone, which are as exact as those of [`alone`]. The points between are
+/// fewer and less exact, and do not suffice to draw the curve.
 ///
 /// # Errors
 /// As [`crate::analysis::forced_response()`].
@@ -82,7 +83,8 @@ pub(crate) fn special_points(
     with_detail(model, solver, range, (Detail::SpecialPoints, None), (None, hooks))
 }
 
-/// The same with modes of `waves`, which curves of the same structure, contacts and response degree of freedom have left there.
+/// The curve for its special points alone, with the modes in `waves` that other curves of this structure, contacts
+/// and response degree of freedom have computed.
 ///
 /// # Errors
 /// As [`crate::analysis::forced_response()`].
@@ -158,7 +160,8 @@ fn with_detail(
     completed(outcome, model, solver)
 }
 
-/// The branch of a call that ended or was stopped. A function of its own: its copies of a branch do not lie on the stack under the call.
+/// The branch of a call that ended or was stopped. It is a function of its own so that its copies of a branch do not
+/// lie on the stack under the call.
 #[inline(never)]
 fn completed(outcome: Result<Box<Branch>>, model: &Model, solver: &SolverOptions) -> Result<Branch> {
     let mut branch = match outcome {
@@ -177,7 +180,7 @@ pub(crate) fn misses_fundamental(forced: &[usize]) -> bool {
     !forced.contains(&1) && vibrating.any(|h| Some(h) != first)
 }
 
-/// The options with the response degree of freedom of the first response, where that has a single one.
+/// The options with the response degree of freedom of the first response, where that response has a single one.
 fn with_leading_response(solver: &SolverOptions, range: &ForcedOptions<'_>) -> Result<SolverOptions> {
     let leading = range.responses.first().filter(|response| response.is_plain());
     let Some(&[dof]) = leading.map(|response| response.dofs) else {
@@ -205,8 +208,8 @@ fn trace(
     tracer.trace(response, first, hooks)
 }
 
-/// The branch from a model to its recorded points, which `trace` records, or the factor by which more samples are
-/// required. A stop before there is a branch is an error.
+/// Condenses the model and follows the branch, whose points `trace` records; or returns the factor by which more
+/// samples are required. A stop before there is a branch is an error.
 fn follow(
     model: &Model,
     solver: &SolverOptions,
@@ -216,7 +219,7 @@ fn follow(
     trace: impl FnOnce(&mut BranchTracer<'_>, &mut ForcedDiscretised<'_>, Point, &mut Hooks<'_>) -> Result<Status>,
 ) -> Result<Sampled> {
     interrupt.phase(Phase::Setup, 0.0)?;
-    let sweep = (range.omega_start, range.omega_stop);
+    let sweep = Range::new(range.omega_start, range.omega_stop);
     let forced = forced_harmonics(model)?;
     let condensed = |harmonics, reference, fewer: Option<&Condensed>| {
         let options = SolverOptions { harmonics, ..*solver };
@@ -317,7 +320,8 @@ fn follow(
     Ok(Ok(branch))
 }
 
-/// Tells whether a complete branch is unbounded, and where a curve that was entered inside the range came back to its parent.
+/// Reports whether a complete branch is unbounded, and where a curve that was entered inside the range came back to
+/// its parent.
 fn tell_end(branch: &mut Branch, length: f64, merged_at: Option<f64>) {
     if branch.status() == Status::Ok
         && let Some(reason) = unbounded_response::in_branch(branch, length)
@@ -329,21 +333,21 @@ fn tell_end(branch: &mut Branch, length: f64, merged_at: Option<f64>) {
     }
 }
 
-fn settings_of(solver: &SolverOptions, (start, end): (f64, f64), detail: Detail) -> Settings {
+fn settings_of(solver: &SolverOptions, range: Range, detail: Detail) -> Settings {
     Settings {
-        start,
-        end,
+        start: range.start,
+        end: range.stop,
         tolerance: solver.tol_residual,
         max_iterations: solver.max_newton,
         steps: StepControl::with_detail(solver.step, solver.step_min, solver.step_max, detail),
     }
 }
 
-/// The course from the start of the range, without bounds of the steps.
+/// The course from the start of the range, without bounds on the steps.
 fn course_of<'a>(solver: &SolverOptions, range: &ForcedOptions<'a>, settings: Settings) -> Course<'a> {
     Course {
         settings,
-        range: (range.omega_start, range.omega_stop),
+        range: Range::new(range.omega_start, range.omega_stop),
         at: range.at,
         max_points: solver.max_points,
         may_refine: may_refine(solver),
@@ -355,7 +359,7 @@ fn course_of<'a>(solver: &SolverOptions, range: &ForcedOptions<'a>, settings: Se
     }
 }
 
-/// The packed relative motions that were given, or those of a start with few harmonics.
+/// The packed relative motions of the guess or, without one, of the solution with few harmonics.
 fn given_start(
     range: &ForcedOptions<'_>,
     resolution: &Resolution,
@@ -368,7 +372,7 @@ fn given_start(
     }
 }
 
-/// The first point of a curve that is entered inside the range, whose course begins there.
+/// The first point of a curve that is entered inside the range. It becomes the start of the course.
 fn enter(
     inside: &Inside<'_>,
     response: &mut ForcedDiscretised<'_>,
@@ -386,7 +390,7 @@ fn enter(
     })
 }
 
-/// How a run ended that has recorded a branch so far.
+/// How a run ended that has recorded `branch`.
 fn ending_of(
     outcome: Result<Status>,
     branch: &Branch,
@@ -413,7 +417,7 @@ fn ending_of(
     Ok(ending)
 }
 
-/// The level of the first point.
+/// The level of harmonics of the first point.
 fn first_level(
     model: &Model,
     solver: &SolverOptions,
@@ -427,7 +431,7 @@ fn first_level(
     })
 }
 
-/// Logs the way to a first point; returns whether it is the guess.
+/// Logs how the first point was found; returns whether it was from the guess.
 pub(crate) fn told_way(way: Way, has_guess: bool, hooks: &mut Hooks<'_>) -> bool {
     let used = way == Way::Newton(InitialGuess::Given);
     if has_guess && !used {
@@ -440,7 +444,7 @@ pub(crate) fn told_way(way: Way, has_guess: bool, hooks: &mut Hooks<'_>) -> bool
     used
 }
 
-/// The way to the flexibility, for the log.
+/// Log sentence that tells how the flexibility is made.
 fn sentence(way: FlexibilityWay, basis: usize) -> String {
     if basis == 0 {
         return format!("flexibility of the contacts: {way}");
@@ -448,8 +452,8 @@ fn sentence(way: FlexibilityWay, basis: usize) -> String {
     format!("flexibility of the contacts, on a basis of {basis} coordinates: {way}")
 }
 
-/// The first point, with the current harmonics or, if that fails and a tolerance selects them, with the fewest, and
-/// with those of the options.
+/// The first point, with the current harmonics. If that fails and a tolerance selects them, it is tried with the
+/// fewest harmonics, and with those of the options.
 #[inline(never)]
 fn first_point(
     response: &mut ForcedDiscretised<'_>,
@@ -479,7 +483,7 @@ fn first_point(
 fn bands(
     model: &Model,
     (solver, detail): (&SolverOptions, Detail),
-    (forced, sweep): (&[usize], (f64, f64)),
+    (forced, sweep): (&[usize], Range),
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<ResonanceBands>> {
     if detail == Detail::Curve || solver.step_max > 0.0 {
@@ -488,7 +492,7 @@ fn bands(
     ResonanceBands::new(model, forced, sweep, interrupt).map(Some)
 }
 
-/// The models of error estimates; none unless they are `wanted`.
+/// Cache of condensed models for error estimates; empty unless they are `wanted`.
 fn extended_models(wanted: bool) -> Result<ModelCache> {
     if wanted {
         ModelCache::for_estimates()
@@ -506,10 +510,11 @@ pub(crate) fn forced_harmonics(model: &Model) -> Result<Vec<usize>> {
     Ok(forced)
 }
 
-/// A model condensed for a sweep, with the modes of its waves where it has some; from one with fewer harmonics, where there is one.
+/// The model condensed for a sweep, with the modes of its waves where it has some; reuses one with fewer harmonics,
+/// where there is one.
 fn condensed(
     (model, options): (&Model, &SolverOptions),
-    sweep: (f64, f64),
+    sweep: Range,
     (reference, fewer): (Option<Reference>, Option<&Condensed>),
     waves: &SharedWaves,
     interrupt: &Interrupt<'_>,
@@ -522,13 +527,13 @@ fn condensed(
         Some(shared) => shared,
         None => Condensed::with_reference(model, options, sweep, reference, interrupt)?,
     };
-    if sweep.0.to_bits() == sweep.1.to_bits() {
+    if sweep.is_single() {
         return Ok(condensed);
     }
     waves.attach(model, condensed, interrupt)
 }
 
-/// The error with its reason, as far as it is known: no bounded solution exists, or, with preloaded contacts, the
+/// The error with its reason, as far as this is known: no bounded solution exists, or, with preloaded contacts, the
 /// static solution or the load path from it was not found.
 #[inline(never)]
 fn with_reason(

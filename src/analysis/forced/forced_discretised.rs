@@ -26,6 +26,7 @@ use crate::model::Model;
 use crate::model::matrices::spring::along;
 use crate::model::natural_modes::linear_modes::ContactState;
 use crate::model::natural_modes::resonances::Resonance;
+use crate::options::Range;
 use crate::options::{Measure, Response, SolverOptions};
 use crate::problem::Problem;
 use crate::problem::gauges::Seen;
@@ -41,8 +42,8 @@ const FACTORISE_UP_TO: usize = 1000;
 /// Kind: tuned; measured on: not recorded.
 const KNOWN: f64 = 1e-6;
 
-/// The equations of a linear response: those with the stuck structure as their reference, where the others have another
-/// one, and a damping that bounds the response of the stuck structure.
+/// The equations of a linear response. Their reference is the stuck structure, where that of the others is different
+/// and damping bounds the response of the stuck structure.
 struct LinearResponse<'a> {
     levels: &'a HarmonicLevels<'a>,
     equations: Option<(usize, Box<Equations<'a>>)>,
@@ -62,7 +63,7 @@ impl<'a> LinearResponse<'a> {
         }
     }
 
-    /// The equations at a resolution; `None` where the ordinary ones are as accurate.
+    /// The equations of the linear response at a resolution; `None` where the ordinary ones are as accurate.
     fn equations(
         &mut self,
         needed: bool,
@@ -93,11 +94,11 @@ pub(crate) struct ForcedDiscretised<'a> {
     linear_response: LinearResponse<'a>,
     recorder: BranchRecorder<'a>,
     estimator: Option<Box<ForcedEstimator<'a>>>,
-    /// Whether the current problem may have been evaluated at another point than the current one.
+    /// Whether the current problem may have been evaluated last at another point than the current one.
     stale: bool,
     /// Error of the point estimated last, until it is recorded.
     estimated: Option<f64>,
-    /// Error of the point estimated last, and those of the responses.
+    /// Error of the point estimated last; and errors of the requested responses.
     last_error: f64,
     last_errors: Vec<f64>,
     responses: WatchedResponses<'a>,
@@ -110,12 +111,12 @@ pub(crate) struct ForcedDiscretised<'a> {
     /// Whether every contact was linear at the point of the curve recorded last.
     linear: bool,
     stability: Option<BranchStability<'a>>,
-    /// Motions with more harmonics, for stability.
+    /// Motions with more harmonics, as starts of shooting for stability.
     fine: Option<FineMotion<'a>>,
 }
 
 impl<'a> ForcedDiscretised<'a> {
-    /// An empty response at a resolution, whose problem may have an initial guess.
+    /// A forced response without points at a resolution, whose problem may have an initial guess.
     pub fn new(
         model: &'a Model,
         solver: &SolverOptions,
@@ -155,7 +156,11 @@ impl<'a> ForcedDiscretised<'a> {
             estimator: estimates
                 .then(|| {
                     let estimator = ForcedEstimator::new(model, solver, response, extended, interrupt);
-                    boxed(|| Ok(estimator.over((settings.start, settings.end)).watching(responses.list)))
+                    boxed(|| {
+                        Ok(estimator
+                            .over(Range::new(settings.start, settings.end))
+                            .watching(responses.list))
+                    })
                 })
                 .transpose()?,
             stale: false,
@@ -169,7 +174,7 @@ impl<'a> ForcedDiscretised<'a> {
             linear: false,
             fine: match &stability {
                 Some(stability) if stability.on_all_degrees => {
-                    let observed = (response, (settings.start, settings.end));
+                    let observed = (response, Range::new(settings.start, settings.end));
                     Some(FineMotion::new(model, solver, observed, extended, interrupt)?)
                 }
                 _ => None,
@@ -202,7 +207,7 @@ impl<'a> ForcedDiscretised<'a> {
         corrector.null_direction(problem, &at.v, start, metric, interrupt)
     }
 
-    /// Packed relative motions of a motion of all degrees of freedom in the current harmonics.
+    /// Packed relative motions of the contacts in the current harmonics, from a motion of all degrees of freedom.
     pub fn packed(&self, motion: &[Complex64]) -> Result<Vec<f64>> {
         relative_motion(self.resolutions.current.resolution, motion)
     }
@@ -224,8 +229,8 @@ impl<'a> ForcedDiscretised<'a> {
         Ok(Some(Point::new(v, corrected, 0.0)))
     }
 
-    /// Solves at the parameter of a start, away from known unknowns; `None` where deflated steps do not converge, or lead to one of
-    /// them all the same.
+    /// Solves at the parameter of a start, away from known solutions; `None` where deflated steps do not converge, or
+    /// lead to one of these all the same.
     pub fn solve_beside(
         &mut self,
         near: &Point,
@@ -251,12 +256,12 @@ impl<'a> ForcedDiscretised<'a> {
         Ok((!is_known).then_some(found))
     }
 
-    /// How the flexibility is made along the branch, and why so.
+    /// How the flexibility is made along the branch, and why in this way.
     pub fn flexibility_way(&self) -> FlexibilityWay {
         self.flexibility_way
     }
 
-    /// The complete branch.
+    /// Completes the branch: its ending, its reduction, and its special points.
     pub fn finish(
         self: Box<Self>,
         model: &Model,
@@ -274,7 +279,7 @@ impl<'a> ForcedDiscretised<'a> {
         self.recorder.finish(ending, reduction, estimates)
     }
 
-    /// Evaluates the problem at a point, unless it was evaluated there last.
+    /// Evaluates the problem at a point, unless this was the last point of evaluation.
     fn refresh(&mut self, point: &Point) -> Result<()> {
         if self.stale {
             let Equations { problem, corrector, .. } = &mut *self.resolutions.current;
@@ -284,7 +289,7 @@ impl<'a> ForcedDiscretised<'a> {
         Ok(())
     }
 
-    /// Estimate of the point evaluated last.
+    /// Error estimate of the point evaluated last; `None` unless requested.
     fn estimate_error(&mut self, point: &Point) -> Result<Option<Estimate>> {
         let Some(estimator) = &mut self.estimator else {
             return Ok(None);
@@ -349,7 +354,7 @@ impl<'a> ForcedDiscretised<'a> {
         Ok(found.response)
     }
 
-    /// A response at a point of a resolution, which may have been read before; the current resolution remains.
+    /// A response at a point of a resolution, possibly from an earlier reading. The current resolution is kept.
     fn read_response(&mut self, response: usize, at: PointAt<'_>) -> Result<Option<Seen>> {
         let current = self.resolutions.index();
         let is_known = self.responses.has_read(at);
@@ -446,7 +451,7 @@ impl Discretised for ForcedDiscretised<'_> {
         Ok(true)
     }
 
-    fn resonances(&mut self, range: (f64, f64)) -> Result<Option<Vec<Resonance>>> {
+    fn resonances(&mut self, range: Range) -> Result<Option<Vec<Resonance>>> {
         let condensed = &self.resolutions.current.resolution.condensed;
         if condensed.is_reduced() {
             return reduced_resonances(self.model, condensed, range, self.interrupt);
@@ -569,7 +574,7 @@ impl Recorder for ForcedDiscretised<'_> {
         self.stability.as_mut()?.take_last()
     }
 
-    /// The point is solved once more at its frequency with the flexibility factorised there: along the sweep it may be a
+    /// Solves the point once more at its frequency with a factorised flexibility, since along the sweep this may be a
     /// sum over modes. At a fold the solution at a fixed frequency is not isolated.
     fn sharpen(&mut self, kind: SpecialKind, point: &mut Point) -> Result<()> {
         self.stale = false;

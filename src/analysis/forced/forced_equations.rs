@@ -5,23 +5,24 @@ use crate::continuation::resolve::solve_linear;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
+use crate::options::Range;
 use crate::options::Response;
 use crate::problem::Problem;
 use crate::problem::harmonic_balance::HarmonicBalance;
 use crate::results::{Record, Resolution, SeenWithError};
 use num_complex::Complex64;
 
-/// The equations at one resolution.
+/// The equations of a forced response at one resolution, with their corrector.
 pub(crate) struct Equations<'a> {
     pub resolution: &'a Resolution,
     pub problem: HarmonicBalance<'a>,
     pub corrector: Box<Corrector>,
-    /// Response of each harmonic, as it was computed last.
+    /// Response of each carried harmonic, as computed last.
     pub response: Vec<Complex64>,
 }
 
 impl<'a> Equations<'a> {
-    /// The solution with linear contacts at a frequency, see `Discretised::linear_at`.
+    /// The solution with linear contacts at a frequency; see `Discretised::linear_at`.
     pub fn linear_at(
         &mut self,
         settings: &Settings,
@@ -36,7 +37,7 @@ impl<'a> Equations<'a> {
         Ok(found?.filter(|_| problem.forces().all_linear()))
     }
 
-    /// The equations over the range of the settings, with further responses.
+    /// The equations over the range of the settings, with the further responses to read.
     pub fn new(
         resolution: &'a Resolution,
         settings: &Settings,
@@ -45,7 +46,7 @@ impl<'a> Equations<'a> {
         interrupt: &'a Interrupt<'a>,
     ) -> Result<Self> {
         let (condensed, samples) = (&*resolution.condensed, resolution.samples);
-        let range = (settings.start, settings.end);
+        let range = Range::new(settings.start, settings.end);
         let mut problem = HarmonicBalance::new(condensed, response, range, samples, given, interrupt)?;
         problem.watch((responses, response), samples)?;
         Ok(Self {

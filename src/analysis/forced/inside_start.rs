@@ -45,42 +45,43 @@ const OTHER_SYMMETRY: f64 = 0.1;
 pub(crate) struct Inside<'k> {
     /// Frequency of the guess.
     pub omega: f64,
-    /// The harmonics that are carried beside those of forces and laws.
+    /// Harmonics to carry beside those of forces and laws.
     pub content: Content,
     /// Sense along the null vector in which the curve leaves a bifurcation; `None`: the guess lies on the curve.
     pub leaves: Option<f64>,
     /// Branches of the same period on which the curve may lie already.
     pub known: &'k [&'k Branch],
-    /// Periods of the force in one of the curve.
+    /// Number of periods of the force in one period of the curve.
     pub periods: usize,
     /// Outcome of the entry.
     pub entry: Cell<Entry>,
-    /// Motions that are added to the guess, with amplitudes and phases of a net.
+    /// Motions to add to the guess, with the amplitudes and phases of a net; `None`: the guess alone.
     pub net: Option<&'k Net<'k>>,
-    /// Solutions beside the guess are sought, which is a known one.
+    /// Deflation, where the guess is a known solution and others are sought beside it.
     pub deflation: Option<Deflation>,
 }
 
-/// The first point, oriented along the curve, and the harmonics that the branch does not have which it leaves.
+/// The first point, oriented along the curve; and the harmonics that the curve has but the branch that it leaves has
+/// not.
 pub(crate) struct Entered {
     pub point: Point,
     pub dropped: Option<Dropped>,
 }
 
-/// Outcome of an entry.
+/// Outcome of the search for a first point inside the range.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) enum Entry {
     /// No point was found.
     #[default]
     Nothing,
-    /// The point lies on a curve that is known.
+    /// The point lies on a known curve.
     Known,
-    /// The curve is followed; the harmonics that the branch does not have which it leaves.
+    /// The curve is followed; with the harmonics that the branch that it leaves does not have.
     Followed(Option<Dropped>),
 }
 
 impl Inside<'_> {
-    /// The first point of a curve that is not known.
+    /// Finds the first point of a curve that is not known yet.
     ///
     /// # Errors
     /// `NoConvergence` where none is found, or it is known; those of the problem.
@@ -184,7 +185,7 @@ impl Inside<'_> {
     }
 }
 
-/// The settings in the sense of a point.
+/// The settings with the range in the direction in which a point is followed.
 pub(crate) fn in_sense_of(point: &Point, settings: Settings) -> Settings {
     let (low, high) = (settings.start.min(settings.end), settings.start.max(settings.end));
     let rises = point.tangent[point.tangent.len() - 1] >= 0.0;
@@ -192,9 +193,9 @@ pub(crate) fn in_sense_of(point: &Point, settings: Settings) -> Settings {
     Settings { start, end, ..settings }
 }
 
-/// The null vector of a motion that may have a symmetry, and the harmonics that the motion does not have where the vector lies in
-/// these alone; `None` where no iteration converges. Another symmetry may break, of motions without these harmonics: the smaller
-/// eigenvalue decides. There are `n` unknowns, the last `others` of which are no motions.
+/// The null vector of a motion that may have a symmetry; and the harmonics that the motion lacks, where the vector
+/// lies in these alone. `None` where no iteration converges. Among motions without these harmonics another symmetry
+/// may break: the smaller eigenvalue decides. There are `n` unknowns, the last `others` of which are no motions.
 pub(crate) fn null_vector(
     set: &HarmonicSet,
     (n, others): (usize, usize),
@@ -229,7 +230,7 @@ pub(crate) fn null_vector(
     Ok(Some((null, dropped)))
 }
 
-/// The harmonics that a motion of this set does not have: the odd or the even multiples of its lowest one.
+/// The harmonics that a motion of this set lacks, if these are all odd or all even multiples of its lowest one.
 pub(crate) fn dropped(set: &HarmonicSet, motion: &[f64], absent: f64) -> Option<Dropped> {
     let all = norm(motion);
     [1, 0].into_iter().find_map(|remainder| {
@@ -243,7 +244,7 @@ pub(crate) fn dropped(set: &HarmonicSet, motion: &[f64], absent: f64) -> Option<
     })
 }
 
-/// A start of the search for the null vector, in the harmonics that the motion does not have, if there are such.
+/// A start vector for the null vector, in the harmonics that the motion lacks, if any.
 fn start_vector(set: &HarmonicSet, n: usize, dropped: Option<Dropped>) -> Result<Vec<f64>> {
     let mut start = try_vec(n, 0.0, CONTEXT)?;
     // Multiples of the golden section modulo 1: without a pattern that a model may have.

@@ -29,8 +29,8 @@ const KNOWN_CURVE_BESIDE: f64 = 0.5;
 /// Kind: fixed.
 const OTHERS_OF_MODE: usize = 2;
 
-/// Whether a point lies on a branch, or its mirror image does: the solutions at its parameter, the frequency of a response or the
-/// amplitude of a mode, between neighbours of the branch decide.
+/// Whether a point, or its mirror image, lies on a branch. The solutions at its parameter (the frequency of a
+/// response, the amplitude of a mode) between neighbours of the branch decide.
 pub(crate) fn lies_on(
     response: &mut dyn Discretised,
     known: &Branch,
@@ -77,7 +77,7 @@ pub(crate) fn lies_on(
     Ok(false)
 }
 
-/// A point of a branch in the harmonics of a model, unknowns with the parameter.
+/// A point of a branch, as unknowns and parameter in the harmonics of a model.
 fn state_of(known: &Branch, point: usize, to: &Condensed) -> Result<Vec<f64>> {
     let from = known.condensed_at(point);
     let factor = from.length() / to.length();
@@ -93,23 +93,24 @@ fn state_of(known: &Branch, point: usize, to: &Condensed) -> Result<Vec<f64>> {
     Ok(v)
 }
 
-/// Whether the line between two frequencies, or a fold of the curve beside it, reaches another one.
+/// Whether the line between two frequencies, or a fold of the curve beside it, reaches the frequency `omega`.
 fn reaches((a, b): (f64, f64), omega: f64, beyond: f64) -> bool {
     omega >= a.min(b) - beyond && omega <= a.max(b) + beyond
 }
 
-/// A point that is sought between neighbours of a branch.
+/// A point, and the data to search for it between neighbours of a branch.
 struct Segment<'s> {
     point: &'s Point,
     periods: usize,
     set: &'s HarmonicSet,
-    /// Unknowns that are no motions.
+    /// Number of unknowns that are no motions.
     others: usize,
 }
 
 impl Segment<'_> {
-    /// Whether the curve between `a` and `b`, unknowns with their frequency, has the point. From a line that is short against the
-    /// curve's bends Newton's method finds the curve; a longer one is halved, in the plane across it.
+    /// Whether the curve between `a` and `b` (unknowns with their frequency) contains the point. From a line that is
+    /// short against the curve's bends Newton's method finds the curve; a longer line is halved, in the plane across
+    /// it.
     fn has(
         &self,
         response: &mut dyn Discretised,
@@ -165,8 +166,8 @@ impl Segment<'_> {
         Ok(false)
     }
 
-    /// Whether a solution is the point, but for a shift by whole periods of the force, or by half a period with the opposite sign,
-    /// under which an odd model has the same motions.
+    /// Whether a solution equals the point, apart from a shift by whole periods of the force, or by half a period
+    /// with the opposite sign, under which an odd model has the same motions.
     fn is_one(&self, found: &Point) -> bool {
         let motion = |point: &'_ Point| point.unknowns().len() - self.others;
         let (a, b) = (&found.v[..motion(found)], &self.point.v[..motion(self.point)]);

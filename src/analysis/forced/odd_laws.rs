@@ -96,7 +96,7 @@ fn compare(model: &Model, branch: &Branch) -> Result<()> {
     Ok(())
 }
 
-/// Forces of a law at some times of a motion, from rest if it has states.
+/// Forces of a law at some times of a motion; a law with states is loaded from zero.
 fn forces(law: &dyn Law, (omega, times): (f64, usize), u: &[f64], v: &[f64]) -> Result<Vec<f64>> {
     let d = law.directions();
     let mut f = try_vec(u.len(), 0.0, CONTEXT)?;

@@ -7,7 +7,7 @@ use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
 use num_complex::Complex64;
 
-/// The derivative of a packed motion by its phase, i h X_h, with no change of the frequency behind it.
+/// Derivative i h X_h of a packed motion by its phase, followed by a zero for the frequency.
 pub(crate) fn phase_direction(set: &HarmonicSet, motion: &[f64]) -> Result<Vec<f64>> {
     let mut direction = try_vec(motion.len() + 1, 0.0, "the direction of the phase")?;
     let packed = set.packed_len().max(1);

@@ -30,7 +30,7 @@ pub fn estimate_at(model: &Model, solver: &SolverOptions, branch: &Branch, point
     estimate_at_with(model, solver, branch, point, &Interrupt::none())
 }
 
-/// The same as [`estimate_at`], and the caller may stop it.
+/// Estimates the error of a stored point as [`estimate_at`], and the caller may stop it.
 ///
 /// # Errors
 /// As [`estimate_at`]; `StoppedByCaller`.
@@ -134,7 +134,7 @@ fn watched(branch: &Branch, point: usize) -> Result<(Vec<Response<'_>>, Vec<Comp
     Ok((responses, values))
 }
 
-/// Position of the harmonic whose amplitude a forced response reports: the lowest above zero.
+/// Index of the carried harmonic whose amplitude a forced response reports: the lowest above zero.
 pub(crate) fn observed(condensed: &Condensed) -> usize {
     condensed.set().watched()
 }

@@ -9,17 +9,17 @@ use crate::results::Branch;
 /// The outcome of a run: the branch, or for a run that ended early the factor by which more samples are required.
 pub(crate) type Sampled = core::result::Result<Box<Branch>, usize>;
 
-/// Whether a run may begin again with more samples: with samples of the laws' own, and a tolerance to meet.
+/// Whether a run may start again with more samples: its laws choose their samples, and there is a tolerance to meet.
 pub(crate) fn may_refine(solver: &SolverOptions) -> bool {
     solver.tolerance > 0.0 && solver.samples == 0 && solver.refinement < MAX_REFINEMENT
 }
 
-/// The factor by which a run requires more samples, if it requires them and may have them.
+/// The factor by which a run requires more samples; `None` if it needs no more, or may not have them.
 pub(crate) fn required(solver: &SolverOptions, recorder: &dyn Recorder) -> Option<usize> {
     Some(recorder.sampling_factor()).filter(|&factor| may_refine(solver) && factor > 1)
 }
 
-/// Runs with more and more samples.
+/// Repeats a run with more samples until these suffice.
 ///
 /// # Errors
 /// Those of the runs.

@@ -14,11 +14,11 @@ use std::sync::Arc;
 
 const CONTEXT: &str = "the start of a branch";
 
-/// A net of starts.
+/// A motion that is added to a solution with several amplitudes and phases, as starts of a search.
 pub(crate) struct Net<'n> {
-    /// A solution has other harmonics than multiples of this order.
+    /// Order n of subharmonic motions: these have harmonics that are no multiples of n.
     pub order: usize,
-    /// Motion that is added, complex, (H + 1) × ndof, harmonic after harmonic.
+    /// Motion to add: complex, (H + 1) × ndof, harmonic after harmonic.
     pub added: &'n [Complex64],
 }
 
@@ -32,8 +32,8 @@ const PHASES: usize = 8;
 const SUBHARMONIC: f64 = 1e-3;
 
 impl Net<'_> {
-    /// The first solution at the frequency of the start that is subharmonic, and lies on no known branch, whose curve may have several
-    /// periods of the force in one of its own.
+    /// The first solution at the frequency of the start that is subharmonic and lies on no known branch. The curve of
+    /// a known branch may have several periods of the force in one of its own.
     ///
     /// # Errors
     /// Those of the problem.
@@ -83,7 +83,7 @@ impl Net<'_> {
     }
 }
 
-/// Share of the harmonics of a motion that are no multiples of an order.
+/// Share of the harmonics of a motion that are no multiples of `order`.
 fn subharmonic_share(set: &HarmonicSet, motion: &[f64], order: usize) -> f64 {
     let mut part = 0.0_f64;
     for y in motion.chunks_exact(set.packed_len().max(1)) {

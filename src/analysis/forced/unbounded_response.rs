@@ -31,8 +31,8 @@ pub(crate) fn in_branch(branch: &Branch, length: f64) -> Option<Error> {
     ))
 }
 
-/// Reason why there is no solution at an angular frequency, if it is known. An error in the search for it is
-/// ignored.
+/// Reason why there is no solution at an angular frequency, if it is known. An error while searching for the reason
+/// is ignored.
 ///
 /// # Errors
 /// `StoppedByCaller`.

@@ -15,21 +15,21 @@ const CONTEXT: &str = "the responses";
 /// Kind: cap.
 const MOST_RECENT: usize = 64;
 
-/// A point by a hash of its unknowns and its tangent, and by its resolution. Solutions at one frequency differ in any of their unknowns:
-/// some, as the mean of a sector, are zero in all.
+/// Key of a point: a hash of its unknowns and tangent, and its resolution. Solutions at one frequency may differ in
+/// any unknown; some, as the mean of a sector, are zero in all.
 type Key = (u64, usize);
 
-/// Responses of a run, and what they are at the last points.
+/// Requested responses of a run, with their values at recent points.
 pub(crate) struct WatchedResponses<'a> {
-    /// The responses that were asked for.
+    /// The requested responses.
     pub list: &'a [Response<'a>],
-    /// Whether the tolerance holds for their norm.
+    /// Whether the tolerance holds for the norm of all responses.
     pub together: bool,
-    /// Their readings at the point recorded last.
+    /// Values of the responses at the point recorded last, with their errors.
     pub seen: Vec<SeenWithError>,
-    /// Their values at the point that is estimated, in the caller's unit.
+    /// Values of the responses at the point whose error is estimated, in the caller's unit.
     pub watched: Vec<Complex64>,
-    /// Points that were read lately, the last one first.
+    /// Points that were read recently, the last one first.
     recent: Vec<(Key, Vec<Seen>)>,
 }
 
@@ -42,7 +42,7 @@ fn key((point, resolution): PointAt<'_>) -> Key {
 }
 
 impl<'a> WatchedResponses<'a> {
-    /// Nothing read yet.
+    /// The responses of `list`, none of them read yet.
     pub fn new(list: &'a [Response<'a>], together: bool) -> Self {
         Self {
             list,
@@ -58,7 +58,7 @@ impl<'a> WatchedResponses<'a> {
         self.list.first().is_some_and(Response::is_plain)
     }
 
-    /// Reads the values at a point whose error is estimated, in a unit of this length.
+    /// Reads the responses at a point whose error is estimated; `length` is the unit of the problem.
     pub fn read(&mut self, problem: &mut HarmonicBalance<'_>, at: PointAt<'_>, length: f64) -> Result<()> {
         let mut watched = core::mem::take(&mut self.watched);
         watched.clear();
@@ -71,7 +71,7 @@ impl<'a> WatchedResponses<'a> {
         Ok(())
     }
 
-    /// Reads a point that is recorded, with the errors of the responses there, if they are known.
+    /// Reads the responses at a point to record; `errors` are their errors, if known.
     pub fn see(&mut self, problem: &mut HarmonicBalance<'_>, at: PointAt<'_>, errors: &[f64]) -> Result<()> {
         self.seen.clear();
         if self.list.is_empty() {
@@ -86,7 +86,7 @@ impl<'a> WatchedResponses<'a> {
         Ok(())
     }
 
-    /// All responses at a point, which may have been read before.
+    /// Values of all responses at a point, possibly from an earlier reading.
     pub fn read_at(&mut self, problem: &mut HarmonicBalance<'_>, at: PointAt<'_>) -> Result<&[Seen]> {
         let wanted = key(at);
         if let Some(known) = self.recent.iter().position(|(key, _)| *key == wanted) {
@@ -104,7 +104,7 @@ impl<'a> WatchedResponses<'a> {
         Ok(&self.recent[0].1)
     }
 
-    /// Whether a point was read lately.
+    /// Whether the responses at a point were read recently.
     pub fn has_read(&self, at: PointAt<'_>) -> bool {
         let wanted = key(at);
         self.recent.iter().any(|(key, _)| *key == wanted)

@@ -13,17 +13,18 @@ use std::f64::consts::TAU;
 
 const CONTEXT: &str = "the responses in time";
 
-/// A response of a point in time.
+/// A response of a point, as integration in time finds it.
 #[derive(Clone, Copy, Debug)]
 pub struct VerifiedResponse {
-    /// The measure of the motion in time. Displacements of sector 0 are read at the times of the integration; those of other
-    /// sectors, velocities and accelerations from its harmonics 0 ..= H.
+    /// Measure of the response in time. Displacements of sector 0 are read at the times of the integration; those of
+    /// other sectors, velocities and accelerations are computed from the harmonics 0 ..= H.
     pub value: f64,
-    /// Distance of the point from it, relative to it: of complex amplitudes where the measure has one.
+    /// Difference between the point and the motion in time, relative to the latter: of complex amplitudes where the
+    /// measure has such.
     pub error: f64,
 }
 
-/// The responses of a stored point at ω in time, in the order of the branch.
+/// The responses of a stored point in time, at the angular frequency ω, in the order of the branch.
 pub(crate) fn verified(
     (model, branch, point): (&Model, &Branch, usize),
     omega: f64,
@@ -62,7 +63,7 @@ pub(crate) fn verified(
     Ok(found)
 }
 
-/// Harmonics 0 ..= H of a gauge in time.
+/// Harmonics 0 ..= H of a response (the sum Σ w x) in time.
 fn harmonics(model: &Model, response: &Response<'_>, omega: f64, time: &TimeResponse) -> Result<Vec<Complex64>> {
     let mut found = Vec::new();
     let sectors = model.structure().sectors().max(1) as f64;
@@ -75,7 +76,7 @@ fn harmonics(model: &Model, response: &Response<'_>, omega: f64, time: &TimeResp
     Ok(found)
 }
 
-/// Σ w x
+/// Weighted sum Σ w x over the degrees of freedom of a response.
 fn weighted<T>(response: &Response<'_>, x: impl Fn(usize) -> T) -> T
 where
     T: core::iter::Sum + core::ops::Mul<f64, Output = T>,
@@ -89,7 +90,7 @@ where
         .sum()
 }
 
-/// The gauge at the times of a period.
+/// Values of a response (the sum Σ w x) at the times of a period.
 fn gauge(response: &Response<'_>, time: &TimeResponse) -> Result<Vec<f64>> {
     let mut values = Vec::new();
     for x in time.samples.chunks_exact(time.ndof) {
@@ -98,7 +99,7 @@ fn gauge(response: &Response<'_>, time: &TimeResponse) -> Result<Vec<f64>> {
     Ok(values)
 }
 
-/// The measure of a signal with these harmonics.
+/// The measure of a signal that is given by its harmonics.
 fn read(measure: Measure, harmonics: &[Complex64], interrupt: &Interrupt<'_>) -> Result<f64> {
     let set = HarmonicSet::all(harmonics.len().saturating_sub(1))?;
     let mut packed = try_vec(set.packed_len(), 0.0, CONTEXT)?;

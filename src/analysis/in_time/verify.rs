@@ -49,27 +49,27 @@ pub struct Verification {
     pub distance: f64,
     /// Contribution of each harmonic 0 ..= H to `motion_error`; their squares sum to its square.
     pub harmonic_errors: Vec<f64>,
-    /// The responses that the branch was asked for.
+    /// The responses that were requested for the branch, in time.
     pub responses: Vec<VerifiedResponse>,
     /// Largest displacement of the response degree of freedom over the period in time.
     pub peak: f64,
-    /// Relative difference of the largest displacement of the point from it.
+    /// Difference between the largest displacements of the point and of the motion in time, relative to the latter.
     pub peak_error: f64,
-    /// Largest change over a period of the motion in time, relative to its largest displacement and velocity:
-    /// errors of this size are those of the integration.
+    /// Largest change over a period of the motion in time, relative to its largest displacement and velocity: the
+    /// integration has errors of this size.
     pub residual: f64,
-    /// Periods that were integrated.
+    /// Number of periods that were integrated.
     pub periods: usize,
-    /// Changes of the contacts between stick, slip, open and closed in one period.
+    /// Number of changes of the contacts between stick, slip, open and closed in one period.
     pub events: usize,
-    /// Degrees of freedom of one sector.
+    /// Number of degrees of freedom of one sector.
     pub ndof: usize,
     /// Coefficients 0 ..= H of all degrees of freedom in time, harmonic by harmonic.
     pub harmonics: Vec<Complex64>,
 }
 
 impl Verification {
-    /// Number and error of the response with the largest error; `None` where the branch was asked for none.
+    /// Index and error of the response with the largest error; `None` where the branch has no requested responses.
     #[must_use]
     pub fn worst_response(&self) -> Option<(usize, f64)> {
         let errors = self.responses.iter().map(|of| of.error).enumerate();
@@ -254,7 +254,7 @@ fn compare(
 
 /// Values of Fourier series at equidistant times.
 struct Series {
-    /// e^{iτ} at the times.
+    /// Factors e^{iτ} at the times.
     turns: Vec<Complex64>,
 }
 
@@ -295,7 +295,7 @@ impl Series {
         Ok((square / self.turns.len() as f64).sqrt())
     }
 
-    /// Largest displacements of a degree of freedom over the period, of the point and in time.
+    /// Largest displacements of a degree of freedom over the period: of the point, and in time.
     fn peaks(&self, x: &[Complex64], time: &TimeResponse, dof: usize) -> [f64; 2] {
         let times = self.turns.len();
         [

@@ -55,7 +55,7 @@ pub struct DampedModes {
 }
 
 impl DampedModes {
-    /// Number of modes.
+    /// Number of modes found.
     #[must_use]
     pub fn count(&self) -> usize {
         self.eigenvalue.len()
@@ -74,9 +74,9 @@ impl DampedModes {
     }
 }
 
-/// The `count` lowest damped modes of the signed nodal diameter `diameter`, modulo N, fewer if fewer motions oscillate: the
-/// wave in which sector s + 1 lags by 2π·diameter/N. With gyroscopic or aerodynamic forces, unsymmetric or complex matrices
-/// the wave of −`diameter` has other modes. A mode that grows is told to the log.
+/// The `count` lowest damped modes of the signed nodal diameter `diameter`, modulo N (fewer if fewer motions
+/// oscillate), for the wave in which sector s + 1 lags by 2π·diameter/N. With gyroscopic or aerodynamic forces, and
+/// with unsymmetric or complex matrices, the wave of −`diameter` has other modes. The log reports a mode that grows.
 ///
 /// # Errors
 /// `Argument` for a diameter of a plain structure, a count of 0 and for a speed that is tied to the frequency; those of the
@@ -106,7 +106,7 @@ pub fn damped_modes(
     Ok(found)
 }
 
-/// Checks what is requested.
+/// Checks the requested nodal diameter and number of modes.
 pub(crate) fn check(model: &Model, diameter: i64, count: usize) -> Result<()> {
     model.check_matrices(true)?;
     model.structure().check_diameter(diameter)?;
@@ -122,7 +122,7 @@ pub(crate) fn check(model: &Model, diameter: i64, count: usize) -> Result<()> {
     Ok(())
 }
 
-/// The modes at the speed of the model, checked.
+/// The damped modes at the speed of the model, whose arguments have been checked.
 pub(crate) fn of_wave(
     model: &Model,
     diameter: i64,
@@ -166,8 +166,8 @@ pub(crate) fn of_wave(
     Ok(found)
 }
 
-/// Whether the waves d and −d have the same eigenvalues: every matrix of the one is the transpose of that of the other. The
-/// directions of their modes are then opposite.
+/// Whether the waves d and −d have equal eigenvalues: each matrix of one wave is the transpose of the matrix of the
+/// other. The directions of their modes are then opposite.
 pub(crate) fn has_equal_senses(model: &Model, diameter: i64, contacts: ContactState<'_>) -> Result<bool> {
     let one = WaveMatrices::new(model, diameter, contacts)?;
     let other = WaveMatrices::new(model, -diameter, contacts)?;
@@ -185,7 +185,7 @@ pub(crate) fn has_equal_senses(model: &Model, diameter: i64, contacts: ContactSt
     Ok(true)
 }
 
-/// M, C with ΩG, and K + Ω²K₁ + iD of a wave.
+/// Matrices M, C + ΩG, and K + Ω²K₁ + iD of a wave.
 struct WaveMatrices {
     mass: Csc,
     damping: Csc,
@@ -211,7 +211,7 @@ impl WaveMatrices {
     }
 }
 
-/// Largest |Gᵢⱼ|/√(MᵢᵢMⱼⱼ): no mode changes its frequency much faster with the speed.
+/// Upper bound of the change of frequencies by the speed: the largest |Gᵢⱼ|/√(MᵢᵢMⱼⱼ).
 fn largest_change(mass: &Csc, gyroscopic: &Csc) -> f64 {
     let mut largest = 0.0_f64;
     for j in 0..gyroscopic.cols {

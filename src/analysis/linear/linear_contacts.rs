@@ -12,22 +12,23 @@ use crate::problem::static_state::StaticState;
 /// State of the contacts in a linear analysis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LinearContacts {
-    /// Without force.
+    /// Contacts without force.
     Free,
-    /// Linear springs of their stiffness at small motion.
+    /// Contacts as linear springs with their stiffness at small motion.
     Stuck,
-    /// Linear springs of their tangent stiffness at the static state; as stuck where nothing loads the model.
+    /// Contacts as linear springs with their tangent stiffness at the static state; as `Stuck` where nothing loads
+    /// the model.
     Static,
 }
 
-/// The state with the static motion that it needs.
+/// State of the contacts, with the static motion that it needs.
 pub(crate) struct PreparedContacts {
     contacts: LinearContacts,
     rest: StaticState,
 }
 
 impl LinearContacts {
-    /// Finds the static state where the contacts are linear about it.
+    /// Finds the static state, where the contacts are linearised about it.
     ///
     /// # Errors
     /// `NoConvergence` or `Singular` if there is no equilibrium; those of callbacks; `OutOfMemory`; `StoppedByCaller`.

@@ -42,29 +42,29 @@ const STATIC_HISTORY_CURVE: usize = 3;
 /// Kind: cap.
 const STATIC_HISTORY_MOST_STEPS: usize = 1_000_000;
 
-/// A load history: values of each step, straight lines between them.
+/// A load history: the loads of each step, with straight lines between them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LoadHistory<'a> {
-    /// Factors of the constant forces; none: 1 in all steps.
+    /// Factors of the constant forces, one a step; empty: 1 in all steps.
     pub factors: &'a [f64],
-    /// Speeds of rotation; none: that of the model.
+    /// Speeds of rotation, one a step; empty: the speed of the model in all steps.
     pub speeds: &'a [f64],
 }
 
-/// A static state on the way.
+/// A static state of the history.
 #[derive(Clone, Debug)]
 pub struct StaticStep {
     /// Displacements of all degrees of freedom.
     pub motion: Vec<f64>,
-    /// Places of the sliders of each contact along t1 and t2; 0 for contacts without.
+    /// Places of the sliders of each contact along t1 and t2; 0 for contacts without sliders.
     pub places: Vec<[f64; 2]>,
-    /// Force of each contact along t1, t2 and n, positive in the sense in which it acts against the relative motion; that along n
+    /// Force of each contact along t1, t2 and n, positive if it acts against the relative motion; the force along n
     /// is minus the normal load.
     pub forces: Vec<[f64; 3]>,
 }
 
-/// The static states of a model along a load history, from the places of its sliders on. `Model::set_slider` with the places of a step
-/// gives a model the residual state that is left there.
+/// Computes the static states of a model along a load history, beginning with the places of its sliders.
+/// `Model::set_slider` with the places of a step gives a model the residual state of this step.
 ///
 /// # Errors
 /// `Dimension` for a history without steps, or lists of different lengths; `NotFinite`; those of the static states; `StoppedByCaller`.
@@ -127,7 +127,7 @@ fn check(history: &LoadHistory<'_>) -> Result<usize> {
     Ok(count)
 }
 
-/// The load at a time of the history.
+/// The load at one time of the history.
 #[derive(Clone, Copy)]
 struct Load {
     factor: f64,
@@ -157,12 +157,12 @@ struct Walk<'a> {
     model: &'a Model,
     solver: &'a SolverOptions,
     interrupt: &'a Interrupt<'a>,
-    /// Largest motion of a contact so far.
+    /// Largest motion at a contact so far.
     size: f64,
 }
 
 impl Walk<'_> {
-    /// The state at the end of a step from that at its begin.
+    /// The state at the end of a step, from the state at its beginning.
     fn to(&mut self, (from, begin): (Load, &StaticStep), to: Load, halvings: usize) -> Result<StaticStep> {
         let whole = self.state(to, &begin.places)?;
         if !self.model.contacts().iter().any(|contact| contact.sliders() > 0) {
@@ -188,7 +188,8 @@ impl Walk<'_> {
         self.to((middle, &half), to, halvings + 1)
     }
 
-    /// Whether a contact opens, closes, begins to slip or to stick between the states of a step.
+    /// Whether a contact opens, closes, begins to slip or begins to stick within a step, by the states at its
+    /// beginning, middle and end.
     fn changes(&self, begin: &StaticStep, half: &StaticStep, end: &StaticStep) -> bool {
         let moved = |a: &[f64; 2], b: &[f64; 2]| {
             let gap = (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
@@ -205,7 +206,7 @@ impl Walk<'_> {
         })
     }
 
-    /// Largest differences of the places of two states, of sliders on a line and in a plane.
+    /// Largest differences between the places of two states: of sliders on a line, and of sliders in a plane.
     fn gaps(&self, a: &StaticStep, b: &StaticStep) -> (f64, f64) {
         let (mut on_line, mut in_plane) = (0.0_f64, 0.0_f64);
         for (contact, (a, b)) in self.model.contacts().iter().zip(a.places.iter().zip(&b.places)) {
@@ -221,7 +222,7 @@ impl Walk<'_> {
         (on_line, in_plane)
     }
 
-    /// The state under a load, with sliders that are dragged from given places.
+    /// The static state under a load, with sliders that are dragged from the given places.
     fn state(&mut self, load: Load, places: &[[f64; 2]]) -> Result<StaticStep> {
         self.interrupt.check()?;
         let mut model = self.model.try_clone()?;
@@ -263,7 +264,7 @@ impl Walk<'_> {
         Ok(step)
     }
 
-    /// The force of a contact at a static motion, and the places of its sliders.
+    /// Force of a contact at a static motion, and the new places of its sliders.
     fn contact(
         &mut self,
         contact: &Contact,

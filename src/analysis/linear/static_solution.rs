@@ -42,7 +42,8 @@ const BALANCED: f64 = 1e-12;
 /// Kind: fixed.
 const OMEGA: f64 = 1.0;
 
-/// The static state of a model; that at zero if nothing loads it. `needs_speed` tells which analysis needs one speed.
+/// The static state of a model; zero motion if nothing loads it. `needs_speed` names the analysis that needs one
+/// speed, for the error.
 ///
 /// # Errors
 /// `Unsupported` where the state depends on a speed that follows the frequency; `NoConvergence` or `Singular` if there is no
@@ -88,8 +89,8 @@ pub(crate) fn static_state(
     solve(model, &condensed, solver, interrupt)
 }
 
-/// The static motion under constant forces of a structure whose contacts are springs or none, of its independent degrees of freedom: that
-/// of linear equations. Zeros where a law is evaluated: [`static_state`] has the motion then.
+/// The static motion of the independent degrees of freedom under constant forces, for a structure whose contacts are
+/// springs or none, from linear equations. Zeros where a law must be evaluated: [`static_state`] has the motion then.
 ///
 /// # Errors
 /// `Singular` where the structure does not hold the forces; `OutOfMemory`; `StoppedByCaller`.
@@ -117,7 +118,7 @@ pub(crate) fn linear_static_motion(
     Ok(motion)
 }
 
-/// Whether the force at rest of a law follows from its evaluation alone.
+/// Whether the static force of some law follows from its evaluation alone.
 fn needs_evaluation(model: &Model) -> Result<bool> {
     for contact in model.contacts() {
         if contact.role() == Role::Active
@@ -135,7 +136,7 @@ fn solve(
     solver: &SolverOptions,
     interrupt: &Interrupt<'_>,
 ) -> Result<StaticState> {
-    let mut problem = HarmonicBalance::new(condensed, 0, (OMEGA, OMEGA), solver.samples, None, interrupt)?;
+    let mut problem = HarmonicBalance::new(condensed, 0, OMEGA.into(), solver.samples, None, interrupt)?;
     let settings = Settings {
         start: OMEGA,
         end: OMEGA,
@@ -179,8 +180,8 @@ fn solve(
     })
 }
 
-/// Tangent stiffness of each law at the static motion `rest`: the force in the fundamental by a motion in the
-/// fundamental, without its part in quadrature.
+/// Tangent stiffness of each law at the static motion `rest`: the fundamental of the force per fundamental of the
+/// motion, without its part in quadrature.
 fn tangents(
     model: &Model,
     condensed: &Condensed,

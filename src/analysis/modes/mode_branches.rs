@@ -22,13 +22,13 @@ const CONTEXT: &str = "the further curves of a mode";
 /// Kind: tuned; measured on: not recorded.
 const MODE_BRANCHES_SAME: f64 = 2e-2;
 
-/// A branch above those that grow, and the ones above it.
+/// A branch with the branches that it descends from.
 struct Above<'b> {
     branch: &'b Branch,
     above: Option<&'b Self>,
 }
 
-/// Outcome of the search for a curve.
+/// Outcome of the search for a further curve.
 #[allow(clippy::large_enum_variant)]
 enum Found {
     Curve(Branch, Option<Dropped>),
@@ -44,7 +44,7 @@ struct ModeTree<'a> {
     searched: Searched,
 }
 
-/// A mode with its further curves.
+/// A nonlinear mode with its further curves.
 ///
 /// # Errors
 /// As [`crate::analysis::modes::nonlinear_mode()`].
@@ -80,7 +80,7 @@ pub(crate) fn with_branches(
 }
 
 impl ModeTree<'_> {
-    /// Adds the children of a branch, and theirs down to `depth`. A child that is not found is none.
+    /// Adds the children of a branch, and their children, down to `depth`. A child that is not found is left out.
     fn grow(
         &mut self,
         parent: &mut Branch,
@@ -129,7 +129,7 @@ impl ModeTree<'_> {
         Ok(())
     }
 
-    /// Counts a place from which a curve is sought; `false` where the tree is large enough.
+    /// Counts a point from which a curve is sought; `false` where the tree is large enough.
     fn may_seek(&mut self, depth: usize) -> bool {
         let may = depth > 0 && self.left > 0;
         if may {
@@ -140,7 +140,7 @@ impl ModeTree<'_> {
         may
     }
 
-    /// Adds a child with its own; `false` where the caller stopped the run.
+    /// Adds a child with its own children; `false` where the caller stopped the run.
     fn add(
         &mut self,
         parent: &mut Branch,
@@ -199,7 +199,7 @@ impl ModeTree<'_> {
         Ok(())
     }
 
-    /// The curve that a point of a branch leads to.
+    /// The further curve to which a point of a branch leads.
     fn child(
         &self,
         parent: &Branch,
@@ -250,7 +250,7 @@ impl ModeTree<'_> {
     }
 }
 
-/// The harmonic with the largest motion at a point.
+/// The harmonic with the largest motion at a point of a branch.
 fn largest_harmonic(branch: &Branch, point: usize, hooks: &Hooks<'_>) -> Result<usize> {
     let highest = branch.carried_at(point).and_then(|carried| carried.last().copied());
     let x = Recovery::at(branch, point, &hooks.interrupt())?.all(highest.unwrap_or(1))?;
@@ -262,8 +262,8 @@ fn largest_harmonic(branch: &Branch, point: usize, hooks: &Hooks<'_>) -> Result<
     Ok(rows.max_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0, |(h, _)| h))
 }
 
-/// Frequency at which a child came back to its parent; NaN where it did not. The branch point there is more exact than the last
-/// point of the child.
+/// Frequency at which a child came back to its parent; NaN where it did not. It is taken from the branch point, which
+/// is more exact than the last point of the child.
 fn merges_at(parent: &Branch, child: &Branch) -> Result<f64> {
     let merged = child.descent().map_or(f64::NAN, |descent| descent.merges_at);
     if merged.is_nan() {

@@ -21,6 +21,7 @@ use crate::hooks::Hooks;
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
 use crate::model::natural_modes::repeated_modes::Multiple;
+use crate::options::Range;
 use crate::options::{Content, Flexibility, ModeOptions, SolverOptions, check_highest};
 use crate::problem::epmc::{Gauge, LinearMode};
 use crate::problem::static_state::StaticState;
@@ -30,7 +31,7 @@ use crate::tracing::branch_recorder::Ending;
 use crate::tracing::branch_tracer::{BranchTracer, Course};
 use crate::tracing::inner_ends::InnerEnds;
 
-/// One curve: that of the linear mode, that of the guess, or the one that an entry leads to.
+/// One curve of a nonlinear mode: from its linear mode, from a guess, or entered at a known point.
 ///
 /// # Errors
 /// As [`crate::analysis::modes::nonlinear_mode()`].
@@ -105,7 +106,7 @@ pub(crate) fn alone(
     })
 }
 
-/// The mode of a run that was stopped before its linear mode was known: zeros in place of its numbers.
+/// The mode of a run that was stopped before its linear mode was known: its numbers are zero.
 fn stopped(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>) -> Result<Branch> {
     let mut branch = Branch::stopped(model, solver)?;
     let info = ModeInfo {
@@ -132,12 +133,12 @@ fn stopped(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>) -> Re
         contact: None,
         reference_dof: 0,
     };
-    let ends = (range.log10_start, range.log10_stop);
+    let ends = Range::new(range.log10_start, range.log10_stop);
     branch.set_mode(ModeData::new(info, linear, gauge, ends));
     Ok(branch)
 }
 
-/// The mode on the wave of the model's engine order, or the factor by which more samples are required.
+/// The nonlinear mode on the wave of the model's engine order, or the factor by which more samples are required.
 fn on_wave(
     model: &Model,
     solver: &SolverOptions,
@@ -246,7 +247,7 @@ fn on_wave(
     Ok(Ok(branch))
 }
 
-/// The first point of a further curve, whose course begins there.
+/// The first point of a further curve. It becomes the start of the course.
 fn enter(
     entry: &ModeEntry<'_>,
     mode: &mut ModeDiscretised<'_>,
@@ -262,7 +263,7 @@ fn enter(
     Ok(entered.point)
 }
 
-/// The error of a mode about a loaded static state.
+/// The error of a nonlinear mode; if no solution was found, it says that the mode is about a loaded static state.
 fn about_static(e: Error) -> Error {
     if e.status != Status::NoConvergence {
         return e;

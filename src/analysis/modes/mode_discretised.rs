@@ -36,13 +36,13 @@ pub(crate) struct ModeDiscretised<'a> {
     resolutions: Resolutions<'a, Equations<'a>>,
     recorder: BranchRecorder<'a>,
     estimator: Option<Box<ModeEstimator<'a>>>,
-    /// Errors of the point estimated last, until it is recorded.
+    /// Errors of frequency and damping ratio of the point estimated last, until it is recorded.
     estimated: Option<(f64, f64)>,
-    /// Errors of the point estimated last.
+    /// Errors of frequency and damping ratio of the point estimated last.
     last_errors: (f64, f64),
     /// Whether the caller requests the estimate of every point.
     estimates_each: bool,
-    /// Largest magnitude of the damping ratio so far.
+    /// Largest modulus of the damping ratio so far.
     damping: f64,
     /// Fundamental of the previous point of the curve.
     before: Vec<Complex64>,
@@ -52,7 +52,7 @@ pub(crate) struct ModeDiscretised<'a> {
     seeks_branches: bool,
 }
 
-/// Quantities of a point besides its motion.
+/// Numbers of a point beside its motion.
 struct Numbers {
     mode: ModePoint,
     omega: f64,
@@ -62,7 +62,7 @@ struct Numbers {
 }
 
 impl<'a> ModeDiscretised<'a> {
-    /// An empty mode at a resolution.
+    /// A nonlinear mode without points at a resolution.
     pub fn new(
         start: LinearStart<'a>,
         solver: &SolverOptions,
@@ -95,7 +95,7 @@ impl<'a> ModeDiscretised<'a> {
         self.recorder.branch_mut().set_mode(data);
     }
 
-    /// log₁₀ of the amplitudes up to which the mode is linear, see [`Epmc::linear_up_to`].
+    /// Amplitudes, as log₁₀, up to which the mode is linear; see [`Epmc::linear_up_to`].
     pub fn linear_up_to(&mut self, first: f64) -> Result<(f64, f64)> {
         self.resolutions.current.problem.linear_up_to(first)
     }
@@ -133,7 +133,7 @@ impl<'a> ModeDiscretised<'a> {
         self.resolutions.current.linear_point(p)
     }
 
-    /// The complete branch.
+    /// Completes the branch: its ending, its reduction, and its special points.
     pub fn finish(
         mut self: Box<Self>,
         model: &Model,
@@ -180,7 +180,7 @@ impl<'a> ModeDiscretised<'a> {
         Ok(())
     }
 
-    /// Estimate of the point evaluated last.
+    /// Error estimate of the point evaluated last; `None` unless requested.
     fn estimate_error(&mut self, point: &Point) -> Result<Option<Estimate>> {
         let Some(estimator) = &mut self.estimator else {
             return Ok(None);
@@ -206,7 +206,7 @@ impl<'a> ModeDiscretised<'a> {
         estimator.at(&solved, state).map(Some)
     }
 
-    /// Quantities of the point evaluated last. Its errors are unknown where no solution is isolated, as at a fold.
+    /// Numbers of the point evaluated last. Its errors are unknown where the solution is not isolated, as at a fold.
     fn measure(&mut self, point: &Point, is_singular: bool) -> Result<Numbers> {
         let mode = self.resolutions.current.measure(point, self.start.linear, &self.before);
         let omega = Epmc::frequency_and_damping(self.start.linear, point.unknowns()).0;
@@ -233,8 +233,9 @@ impl<'a> ModeDiscretised<'a> {
         })
     }
 
-    /// The error that the tolerance bounds: that of the frequency, relative, or of the damping ratio, over the
-    /// largest one so far. NaN if either is unknown. A mode without damping has the round-off of one.
+    /// The error that the tolerance bounds: the larger of the frequency's relative error and the damping ratio's
+    /// error over the largest ratio so far. NaN if either is unknown. Where a mode has no damping, the ratio counts
+    /// as its round-off at least.
     fn bounded_error(&self, (of_frequency, of_damping): (f64, f64), damping: f64) -> f64 {
         let of_damping = if of_damping == 0.0 {
             0.0
@@ -326,7 +327,7 @@ impl Discretised for ModeDiscretised<'_> {
         self.seeks_branches && last.is_some_and(|last| last.fundamental_share >= VANISHING_FUNDAMENTAL)
     }
 
-    /// The damping ratio is observed; where it is zero the motion is one of the model alone.
+    /// The damping ratio is observed. Where it is zero, the model vibrates freely with this motion.
     fn level_of_limit_cycles(&self) -> Option<f64> {
         let linear = self.start.linear;
         let mut unknowns = [0.0; 2];
@@ -354,7 +355,7 @@ impl Recorder for ModeDiscretised<'_> {
         Ok(())
     }
 
-    /// Modes are factorised at each point of the curve: no evaluation is more accurate.
+    /// Nothing to do: modes are factorised at each point of the curve, and no evaluation is more accurate.
     fn sharpen(&mut self, _kind: SpecialKind, point: &mut Point) -> Result<()> {
         self.evaluate(point)
     }

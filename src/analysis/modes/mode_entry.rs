@@ -39,29 +39,30 @@ const MODE_ENTRY_DISTANCES: [f64; 6] = [1e-2, 3e-3, 3e-2, 1e-3, 1e-1, 3e-4];
 /// Kind: tuned; measured on: not recorded.
 const MODE_ENTRY_ABSENT: f64 = 1e-4;
 
-/// How a further curve is reached from a known point.
+/// The way to a further curve from a known point.
 pub(crate) enum EntryWay<'k> {
-    /// From a branch point of the curve with this direction, in a sense of the null vector.
+    /// Beside a branch point of the curve with this tangent, in a sense of the null vector.
     BranchPoint { tangent: &'k [f64], sense: f64 },
-    /// Through a vanishing fundamental, beside harmonics whose lowest one has this number.
+    /// Through a vanishing fundamental, with other harmonics of which `order` is the lowest.
     OtherPhase { order: usize },
 }
 
-/// Entry of a further curve of a nonlinear mode.
+/// Entry of a further curve of a nonlinear mode, near a known point.
 pub(crate) struct ModeEntry<'k> {
-    /// The model in whose harmonics the known point is.
+    /// The condensed model in whose harmonics the known point is given.
     pub from: &'k Condensed,
-    /// Its unknowns with the parameter.
+    /// Unknowns of the known point, followed by its parameter.
     pub v: &'k [f64],
     pub way: EntryWay<'k>,
-    /// Curves on which it may lie already.
+    /// Curves on which the new point may lie already.
     pub known: &'k [&'k Branch],
     /// Outcome of the entry.
     pub outcome: Cell<Entry>,
 }
 
 impl ModeEntry<'_> {
-    /// The first point, oriented along the curve, and the harmonics that the known curve does not have which it leaves.
+    /// Finds the first point, oriented along the curve; and the harmonics that the curve has but the known curve that
+    /// it leaves has not.
     ///
     /// # Errors
     /// `NoConvergence` where none is found, or it is known; those of the problem.
@@ -127,7 +128,7 @@ fn known_point(v: Vec<f64>, tangent: Vec<f64>) -> Point {
     }
 }
 
-/// The point beside a branch point, along the null vector in a sense.
+/// The point beside a branch point, along the null vector in the given sense.
 fn beside(
     mode: &mut ModeDiscretised<'_>,
     (at, sense): (&Point, f64),
@@ -175,7 +176,7 @@ fn beside(
     Ok(None)
 }
 
-/// Removes harmonics from a motion.
+/// Sets the `dropped` harmonics of a motion to zero.
 fn without(set: &HarmonicSet, motion: &mut [f64], dropped: Dropped) {
     for y in motion.chunks_exact_mut(set.packed_len().max(1)) {
         for (i, _) in set.numbers().iter().enumerate().filter(|(_, h)| dropped.has(**h)) {
@@ -184,7 +185,7 @@ fn without(set: &HarmonicSet, motion: &mut [f64], dropped: Dropped) {
     }
 }
 
-/// The motion with the other phase of its small fundamental.
+/// Turns the small fundamental of a motion to its other phase.
 fn turn(set: &HarmonicSet, motion: &mut [f64], order: usize) {
     let m = set.packed_len().max(1);
     for y in motion.chunks_exact_mut(m) {

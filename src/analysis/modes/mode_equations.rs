@@ -21,30 +21,30 @@ const CONTEXT: &str = "the nonlinear mode";
 pub(crate) struct LinearStart<'a> {
     pub linear: &'a LinearMode,
     pub gauge: &'a Gauge,
-    /// Whether it is one of several of its frequency.
+    /// Whether several linear modes share its frequency.
     pub is_repeated: bool,
     pub interrupt: &'a Interrupt<'a>,
 }
 
-/// The equations at one resolution.
+/// The equations of a nonlinear mode at one resolution.
 pub(crate) struct Equations<'a> {
     pub resolution: &'a Resolution,
     pub problem: Epmc<'a>,
     pub corrector: Corrector,
     at: Residual,
-    /// Packed relative motions of the point evaluated last, about the static state and in total.
+    /// Packed relative motions of the point evaluated last: about the static state, and in total.
     pub vibration: Vec<f64>,
     pub motion: Vec<f64>,
     /// The static state in the units of the solver.
     rest: StaticState,
     forces: Vec<f64>,
-    /// Carried harmonics of the response degree of freedom there.
+    /// Response degree of freedom at the point evaluated last, by carried harmonics.
     pub response: Vec<Complex64>,
     weighted: Vec<Complex64>,
 }
 
 impl<'a> Equations<'a> {
-    /// Memory for a resolution.
+    /// Equations at a resolution, with their memory.
     pub fn new(resolution: &'a Resolution, start: &LinearStart<'a>, settings: &Settings) -> Result<Self> {
         let condensed = &*resolution.condensed;
         let mut problem = Epmc::new(
@@ -94,7 +94,7 @@ impl<'a> Equations<'a> {
         })
     }
 
-    /// Evaluates the problem at a point, and the response of a degree of freedom.
+    /// Evaluates the problem at a point, and the response of the degree of freedom `dof`.
     pub fn evaluate(&mut self, point: &Point, dof: usize) -> Result<()> {
         let (u, p) = (point.unknowns(), point.parameter());
         self.problem.evaluate(u, p, &mut self.at)?;
@@ -124,8 +124,8 @@ impl<'a> Equations<'a> {
         self.problem.fundamental()
     }
 
-    /// Quantities of the mode at the point evaluated last; `before` is the fundamental of the previous point, empty
-    /// if there is none.
+    /// Numbers of the mode at the point evaluated last; `before` is the fundamental of the previous point, empty if
+    /// there is none.
     pub fn measure(&mut self, point: &Point, linear: &LinearMode, before: &[Complex64]) -> ModePoint {
         let condensed = &*self.resolution.condensed;
         let n = point.unknowns().len();

@@ -11,7 +11,7 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the guess";
 
-/// The unknowns of a guess at a resolution.
+/// The guess as unknowns of the equations at a resolution.
 ///
 /// # Errors
 /// `Argument` where the guess does not move what measures amplitude and phase; `OutOfMemory`.
@@ -57,7 +57,7 @@ pub(crate) fn unknowns(
     Ok(u)
 }
 
-/// The amplitude of a fundamental.
+/// Amplitude of a mode, as its normalisation defines it, from the fundamental of all degrees of freedom.
 fn amplitude(block: Option<&crate::condense::HarmonicBlock>, gauge: &Gauge, first: &[Complex64]) -> Result<f64> {
     if let Some(row) = &gauge.contact {
         return Ok(along(row, first).norm());

@@ -20,16 +20,17 @@ const MODE_ONSET_SHARE: f64 = 1e-9;
 /// Kind: fixed.
 const MODE_ONSET_KINDS: usize = 2;
 
-/// Finds the onsets, as points are recorded one after the other.
+/// Finds the amplitudes of onset while points are recorded one after the other.
 pub(crate) struct OnsetSearch {
-    /// log₁₀ of the amplitudes of slip and of lift-off, as far as known.
+    /// Amplitudes, as log₁₀, where slip and lift-off begin, as far as known.
     found: [Option<f64>; MODE_ONSET_KINDS],
     /// The point recorded last, with the index of its resolution.
     before: Option<(Point, usize)>,
 }
 
 impl OnsetSearch {
-    /// A search on the mode with these onsets of its linear mode, of which the first are those of the nonlinear one.
+    /// Starts a search, with the onsets of the linear mode. Those are valid for the nonlinear mode too, as far as it
+    /// is linear.
     pub fn new(onset: Onset) -> Self {
         let first = |a: f64| (a <= onset.linear && a.is_finite()).then(|| a.log10());
         Self {
@@ -38,12 +39,12 @@ impl OnsetSearch {
         }
     }
 
-    /// log₁₀ of the amplitudes of slip and of lift-off; infinite where no point has any.
+    /// Amplitudes, as log₁₀, where slip and lift-off begin; infinite where no point shows such.
     pub fn found(&self) -> [f64; MODE_ONSET_KINDS] {
         self.found.map(|a| a.unwrap_or(f64::INFINITY))
     }
 
-    /// Kinds of onset that the problem shows at the point evaluated last.
+    /// Whether slip and lift-off occur at the point where the problem was evaluated last.
     fn shown(problem: &Epmc<'_>) -> [bool; MODE_ONSET_KINDS] {
         let forces = problem.forces();
         [
@@ -90,7 +91,7 @@ impl OnsetSearch {
     }
 }
 
-/// Bisection between a point without and one with an onset.
+/// Amplitude of an onset, as log₁₀, by bisection between a point without and one with it.
 fn locate(
     problem: &mut Epmc<'_>,
     kind: usize,

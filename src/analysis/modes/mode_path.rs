@@ -9,6 +9,7 @@ use crate::error::{Result, Status, fail};
 use crate::harmonics::discretised::{Discretised, Recorder};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
+use crate::options::Range;
 use crate::options::{ModeOptions, SolverOptions};
 use crate::problem::Problem;
 use crate::results::SpecialKind;
@@ -24,7 +25,7 @@ const BEYOND_ONSET: f64 = 1.02;
 /// Kind: tuned; measured on: not recorded.
 const BELOW_ONSET: f64 = 3.0;
 
-/// log₁₀ of the amplitudes up to which the mode is linear, and up to which it nearly is.
+/// Amplitudes, as log₁₀, up to which the mode is linear, and up to which it nearly is.
 #[derive(Clone, Copy)]
 pub(crate) struct Onset {
     pub linear_up_to: f64,
@@ -32,7 +33,7 @@ pub(crate) struct Onset {
 }
 
 impl Onset {
-    /// Amplitude just beyond the onset of slip.
+    /// Amplitude, as log₁₀, just beyond the onset of slip.
     fn beyond(self) -> f64 {
         self.linear_up_to + BEYOND_ONSET.log10()
     }
@@ -62,7 +63,7 @@ pub(crate) fn course<'a>(
             start: if from < end { start } else { from },
             ..settings
         },
-        range: (start, end),
+        range: Range::new(start, end),
         at: range.at,
         max_points: solver.max_points,
         may_refine: may_refine(solver),
@@ -82,7 +83,7 @@ pub(crate) fn trace(
     hooks: &mut Hooks<'_>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Status> {
-    let (start, end) = tracer.course().range;
+    let Range { start, stop: end } = tracer.course().range;
     let max_points = tracer.course().max_points;
     let linear_up_to = onset.linear_up_to;
     let level = mode.resolution();
@@ -129,7 +130,7 @@ pub(crate) fn trace(
     }
 }
 
-/// Records the branch from the point at the start of the range that a guess leads to.
+/// Records the branch from the point, at the start of the range, to which a guess leads.
 fn from_guess(
     mode: &mut ModeDiscretised<'_>,
     tracer: &mut BranchTracer<'_>,
@@ -145,7 +146,8 @@ fn from_guess(
     tracer.trace(mode, point, hooks)
 }
 
-/// Solutions at the requested amplitudes of the linear range, and of the gap between it and the first point beyond.
+/// Records solutions at the requested amplitudes of the linear range, and of the gap between this range and the first
+/// point beyond.
 fn requested_below(
     mode: &mut ModeDiscretised<'_>,
     tracer: &mut BranchTracer<'_>,
@@ -235,7 +237,7 @@ fn linear_range(
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<Status>> {
     let course = tracer.course();
-    let (start, stop) = course.range;
+    let Range { start, stop } = course.range;
     let spacing = course.settings.steps.largest() * (stop - start);
     let steps = ((end - start) / spacing).ceil().max(1.0);
     let count = if end > start { steps as usize + 1 } else { 1 };

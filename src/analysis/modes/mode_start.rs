@@ -8,6 +8,7 @@ use crate::model::Model;
 use crate::model::matrices::spring::along;
 use crate::model::natural_modes::linear_modes::ContactState;
 use crate::model::natural_modes::mode_selection::SelectedMode;
+use crate::options::Range;
 use crate::options::{Amplitude, ModeOptions, SolverOptions};
 use crate::problem::epmc::{Gauge, LinearMode};
 use crate::results::stored::mode_branch::{ModeData, ModeInfo};
@@ -24,7 +25,7 @@ pub(crate) struct ModeStart {
 }
 
 impl ModeStart {
-    /// The mode that the options select, about the static state.
+    /// The linear mode that the options select, about the static state.
     pub fn new(
         model: &Model,
         solver: &SolverOptions,
@@ -53,7 +54,7 @@ impl ModeStart {
         Ok(Self { linear, gauge, chosen })
     }
 
-    /// Whether several modes have its frequency.
+    /// Whether several linear modes share its frequency.
     pub fn is_repeated(&self) -> bool {
         self.chosen.multiplicity > 1
     }
@@ -76,8 +77,8 @@ impl ModeStart {
         Ok(())
     }
 
-    /// The data of the mode. Like all parts of a run it is a function of its own, so that they take their share of a small
-    /// stack one after the other.
+    /// The data of the mode for its branch. Like all parts of a run it is a function of its own, so that they use a
+    /// small stack one after the other.
     #[inline(never)]
     pub fn data(&self, model: &Model, range: &ModeOptions<'_>, linear_up_to: f64) -> Result<ModeData> {
         const CONTEXT: &str = "the nonlinear mode";
@@ -95,7 +96,7 @@ impl ModeStart {
             stuck: try_copy(&self.chosen.stuck, CONTEXT)?,
             free: try_copy(&self.chosen.free, CONTEXT)?,
         };
-        let ends = (range.log10_start, range.log10_stop);
+        let ends = Range::new(range.log10_start, range.log10_stop);
         Ok(ModeData::new(info, self.linear.clone(), self.gauge.clone(), ends))
     }
 }

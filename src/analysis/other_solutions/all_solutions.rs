@@ -8,7 +8,7 @@ use crate::model::Model;
 use crate::options::{ForcedOptions, SolverOptions, Waves};
 use crate::results::{Branch, Searched};
 
-/// A response with its children. Stability is computed along all of them, as bifurcations follow from it.
+/// A forced response with its children. Stability is computed along all of them, since bifurcations follow from it.
 ///
 /// # Errors
 /// As [`crate::analysis::forced_response()`].
@@ -52,7 +52,7 @@ pub(crate) fn forced_response(
     Ok(branch)
 }
 
-/// Adds all branches that the options ask for, until there are as many as may be, or the caller stops the run.
+/// Adds all branches that the options request, until the largest number is reached, or the caller stops the run.
 fn seek(tree: &mut Tree<'_>, branch: &mut Branch, depth: usize, hooks: &mut Hooks<'_>) -> Result<()> {
     let sought = tree.range.branches;
     tree.grow(branch, &Place::root(), depth, hooks)?;

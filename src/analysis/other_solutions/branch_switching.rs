@@ -31,16 +31,16 @@ const AT_START: f64 = 1e-3;
 
 /// Place of a branch in the tree.
 pub(crate) struct Place<'p> {
-    /// Periods of the forces in one of its own.
+    /// Number of periods of the forces in one period of the branch.
     pub periods: usize,
-    /// The harmonics that its parent does not have.
+    /// The harmonics that the parent does not have.
     pub dropped: Option<Dropped>,
-    /// The parent.
+    /// The parent, with its own place; `None` for the root.
     pub above: Option<(&'p Branch, &'p Place<'p>)>,
 }
 
 impl Place<'_> {
-    /// The place of a branch without a parent.
+    /// Place of a branch without a parent.
     pub fn root() -> Self {
         Self {
             periods: 1,
@@ -53,28 +53,28 @@ impl Place<'_> {
 /// Outcome of the search for a curve.
 #[allow(clippy::large_enum_variant)]
 pub(crate) enum Found {
-    /// It, and the harmonics that the branch does not have which it leaves.
+    /// A new curve; and the harmonics that it has but the branch that it leaves has not.
     Curve(Branch, Option<Dropped>),
-    /// It is known.
+    /// The curve is known already.
     Known,
-    /// None was found.
+    /// No curve was found.
     Nothing,
 }
 
-/// A tree of branches that grows.
+/// A tree of branches to which children are added.
 pub(crate) struct Tree<'a> {
     pub model: &'a Model,
     pub solver: &'a SolverOptions,
     pub range: &'a ForcedOptions<'a>,
-    /// Branches that may still be added.
+    /// Number of branches that may still be added.
     pub left: usize,
-    /// Lowest harmonic of the response that was asked for.
+    /// Lowest harmonic of the requested response.
     pub base: usize,
     pub searched: Searched,
 }
 
 impl Tree<'_> {
-    /// Adds the children of a branch, and theirs down to `depth`.
+    /// Adds the children of a branch, and their children, down to `depth`.
     ///
     /// # Errors
     /// `OutOfMemory`; those of callbacks. A child that is not found is none.
@@ -146,7 +146,8 @@ impl Tree<'_> {
         Ok(())
     }
 
-    /// Adds a detached curve, of so many periods of the branch in one of its own, with its children down to `depth`.
+    /// Adds a detached curve, with its children down to `depth`. `periods` is the number of periods of the branch in
+    /// one period of the curve.
     ///
     /// # Errors
     /// As [`Self::grow`]; what was found before is added all the same.
@@ -173,7 +174,8 @@ impl Tree<'_> {
         grown
     }
 
-    /// The bifurcation at which a child ends that came back to its parent at a frequency, and its own frequency.
+    /// The bifurcation of the parent at which a child ends that came back at a frequency, by its index, and the
+    /// frequency of this bifurcation.
     fn end_of(
         &self,
         parent: &Branch,
@@ -194,7 +196,7 @@ impl Tree<'_> {
             .map(|(i, b)| (i, b.omega)))
     }
 
-    /// The child at a bifurcation.
+    /// The child that branches off at a bifurcation.
     fn child(
         &self,
         parent: &Branch,
@@ -246,7 +248,7 @@ impl Tree<'_> {
         self.at_period(&model, (&inside, &guess), (periods, parent.response_dof()), hooks)
     }
 
-    /// A curve that is entered inside the range, of a model with a longer period.
+    /// A curve that is entered inside the range, on the model with a longer period.
     pub fn at_period(
         &self,
         model: &Model,
@@ -313,8 +315,8 @@ impl Tree<'_> {
     }
 }
 
-/// Leaves the bifurcations of a branch out at which it leaves its parent, or comes back: there its motions have the harmonics no
-/// more that its parent does not have.
+/// Removes the bifurcations of a branch at which it leaves its parent, or comes back to it: at these points its
+/// motions lose the harmonics that the parent does not have.
 fn leave_own_starts(branch: &mut Branch, place: &Place<'_>, interrupt: &Interrupt<'_>) -> Result<()> {
     let Some(dropped) = place.dropped else {
         return Ok(());
@@ -329,7 +331,7 @@ fn leave_own_starts(branch: &mut Branch, place: &Place<'_>, interrupt: &Interrup
     Ok(())
 }
 
-/// Whether a motion has next to nothing of some harmonics.
+/// Whether the harmonics `dropped` nearly vanish in the motion of a point.
 fn is_without(branch: &Branch, point: usize, dropped: Dropped, interrupt: &Interrupt<'_>) -> Result<bool> {
     let highest = branch.carried_at(point).and_then(|carried| carried.last().copied());
     let x = Recovery::at(branch, point, interrupt)?.all(highest.unwrap_or(0))?;

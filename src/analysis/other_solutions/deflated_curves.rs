@@ -22,7 +22,7 @@ const DEFLATION_PLACES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 const DEFLATION_MOST_PEAKS: usize = 3;
 
 impl Tree<'_> {
-    /// Adds the curves that deflation finds beside a branch, with their children down to `depth`.
+    /// Adds the curves that deflation finds beside a branch, with their children, down to `depth`.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`; those of callbacks.
@@ -55,7 +55,7 @@ impl Tree<'_> {
         Ok(())
     }
 
-    /// The curve of a solution beside a point of the response.
+    /// The curve through a solution that deflation finds beside a point of the response.
     fn deflated(&self, branch: &Branch, (point, omega): (usize, f64), hooks: &mut Hooks<'_>) -> Result<Found> {
         let mut known = Vec::new();
         try_push(&mut known, branch, CONTEXT)?;

@@ -46,7 +46,7 @@ const DETACHED_CURVES_MOST_POINTS: usize = 2_000;
 const ONE_END: f64 = 1e-6;
 
 impl Tree<'_> {
-    /// Adds the detached curves beside a branch, with their children down to `depth`.
+    /// Adds the detached curves beside a branch, with their children, down to `depth`.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`; those of callbacks.
@@ -100,13 +100,13 @@ impl Tree<'_> {
         Ok(())
     }
 
-    /// The ends of the range, the lower one first.
+    /// Lowest and highest frequency of the range.
     pub fn ends(&self) -> (f64, f64) {
         let (a, b) = (self.range.omega_start, self.range.omega_stop);
         (a.min(b), a.max(b))
     }
 
-    /// The motions at the resonances of a nonlinear mode, and the extrema of its force.
+    /// The motions at the resonances of a nonlinear mode under the force, and the extrema of the force along it.
     fn along_mode(&mut self, number: usize, (from, to): (f64, f64), hooks: &mut Hooks<'_>) -> Result<Motions> {
         let solver = SolverOptions {
             tolerance: 0.0,
@@ -147,7 +147,7 @@ impl Tree<'_> {
         Ok(motions)
     }
 
-    /// Follows the curves through the resonances of a mode, those of the largest amplitudes first.
+    /// Follows the curves through the resonances of a mode, largest amplitudes first.
     fn add_resonances(
         &mut self,
         branch: &mut Branch,
@@ -182,7 +182,7 @@ impl Tree<'_> {
         Ok(())
     }
 
-    /// The curve through a motion at a frequency, unless it is known.
+    /// The curve through a motion at a frequency, unless that curve is known.
     pub fn through(
         &self,
         branch: &Branch,
@@ -217,7 +217,7 @@ impl Tree<'_> {
         Ok(Found::Curve(curve, dropped))
     }
 
-    /// Whether two curves leave the range in one motion: then they are one.
+    /// Whether two curves leave the range with one motion, so that they are one curve.
     pub fn shares_an_end(&self, a: &Branch, b: &Branch, interrupt: &Interrupt<'_>) -> Result<bool> {
         let (low, high) = self.ends();
         let ends = |branch: &Branch| [0, branch.points().saturating_sub(1)];
@@ -249,8 +249,8 @@ impl Tree<'_> {
         Ok(false)
     }
 
-    /// A curve that left the range, followed from that end once more, through its start to its other end; `None` where it did not
-    /// leave the range.
+    /// A curve that left the range, followed back from this end through its start to its other end; `None` where it
+    /// did not leave the range.
     pub fn whole(
         &self,
         model: &Model,
@@ -296,8 +296,8 @@ impl Tree<'_> {
     }
 }
 
-/// Largest amplitude of the branch in the motion of a linear mode, at the degree of freedom that moves most in it; `None` where
-/// it does not move.
+/// Largest amplitude of the branch at the degree of freedom that moves most in a linear mode; `None` where this
+/// degree of freedom does not move.
 fn largest_amplitude(branch: &Branch, modes: &LinearModes, number: usize, hooks: &Hooks<'_>) -> Result<Option<f64>> {
     let ndof = branch.ndof().max(1);
     let shape = modes.shapes.chunks_exact(ndof).nth(number).unwrap_or(&[]);
@@ -318,7 +318,8 @@ fn largest_amplitude(branch: &Branch, modes: &LinearModes, number: usize, hooks:
     Ok((most > 0.0 && most.is_finite()).then_some(most))
 }
 
-/// The forces at which the curve with a resonance is born and merges with the one beneath; NaN where the mode has none.
+/// Factors of the force at which the detached curve with a resonance is born, and at which it merges with the curve
+/// beneath; NaN where the mode has no such extremum.
 fn forces(resonance: f64, extrema: &[ForceExtremum]) -> (f64, f64) {
     let minima = || extrema.iter().filter(|extremum| !extremum.is_maximum);
     // The upper resonance lies above the minimum of the force, the lower one beneath.
@@ -337,7 +338,8 @@ fn forces(resonance: f64, extrema: &[ForceExtremum]) -> (f64, f64) {
     (birth.factor, merging.map_or(f64::NAN, |merging| merging.factor))
 }
 
-/// Goes on after a failure of the search, which costs no branch that is known.
+/// Continues after a failed search, which must not cost a known branch: logs the error, or returns it where the run
+/// must end.
 pub(crate) fn tolerate(e: Error, hooks: &mut Hooks<'_>) -> Result<()> {
     match e.status {
         Status::StoppedByCaller | Status::OutOfMemory | Status::Callback => Err(e),

@@ -35,7 +35,7 @@ const OVER_FORCE_MOST_UNKNOWNS: usize = 200;
 /// Kind: tuned; measured on: not recorded.
 const OVER_FORCE_SAME: f64 = 1e-6;
 
-/// A solution at the force itself, with the factors of birth and merging next to it.
+/// A solution at the nominal force, with the nearest factors of the force at which its curve is born and merges.
 struct Crossing {
     omega: f64,
     amplitude: f64,
@@ -45,7 +45,7 @@ struct Crossing {
 }
 
 impl Tree<'_> {
-    /// Adds the detached curves that peaks and folds lead to over the force, with their children down to `depth`.
+    /// Adds the detached curves to which peaks and folds lead over the force, with their children, down to `depth`.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`; those of callbacks.
@@ -84,8 +84,8 @@ impl Tree<'_> {
         Ok(())
     }
 
-    /// The solutions at the force itself on the curve over the force that leaves a peak or a fold of the branch towards the second of
-    /// two factors.
+    /// The solutions at the nominal force on a curve over the force, followed from a peak or a fold of the branch
+    /// towards the second of two factors.
     fn crossings(
         &mut self,
         branch: &Branch,
@@ -134,7 +134,8 @@ impl Tree<'_> {
         Ok(found)
     }
 
-    /// Follows the curve through a solution, unless it is known: of a detached one birth and merging are then told.
+    /// Follows the curve through a solution, unless it is known. For a detached curve, birth and merging are
+    /// reported.
     fn add_crossing(
         &mut self,
         branch: &mut Branch,
@@ -178,7 +179,7 @@ impl Tree<'_> {
     }
 }
 
-/// The peaks, the highest first, and the folds of a branch from which curves are followed.
+/// The peaks of a branch, the highest first, and its folds, from which curves are followed.
 fn starts(branch: &Branch) -> Result<Vec<(ResponsePoint, Special)>> {
     let mut peaks = Vec::new();
     for peak in branch.peaks() {
@@ -192,7 +193,8 @@ fn starts(branch: &Branch) -> Result<Vec<(ResponsePoint, Special)>> {
     Ok(peaks)
 }
 
-/// The factor of the turn of a kind nearest to a point along the curve, whose numbers rise along it; NaN without one.
+/// Factor of the force at the turn of the given kind nearest to a point, by their positions along the curve; NaN
+/// without such a turn.
 fn nearest(turns: &[Turn], point: usize, is_maximum: bool) -> f64 {
     let of_kind = turns.iter().filter(|turn| turn.is_maximum == is_maximum);
     let nearest = of_kind.min_by_key(|turn| turn.point.abs_diff(point));

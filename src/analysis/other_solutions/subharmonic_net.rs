@@ -34,7 +34,7 @@ const SUBHARMONIC_NET_MOST_MODES: usize = 4;
 const SUBHARMONIC_NET_NEAR: (f64, f64) = (0.3, 2.0);
 
 impl Tree<'_> {
-    /// Adds subharmonic curves, with their children down to `depth`.
+    /// Adds subharmonic curves, with their children, down to `depth`.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`; those of callbacks.

@@ -11,6 +11,7 @@ use crate::harmonics::harmonic_levels::HarmonicLevels;
 use crate::hooks::Hooks;
 use crate::interrupt::Interrupt;
 use crate::model::Model;
+use crate::options::Range;
 use crate::options::{DampingForm, ModeChoice, ModeOptions, SolverOptions};
 use crate::results::stored::mode_branch::ModeData;
 use crate::results::{Branch, ParameterData};
@@ -24,7 +25,7 @@ const STUCK: f64 = -60.0;
 /// Kind: tuned; measured on: not recorded.
 const FROM_ONSET: (f64, f64) = (-0.1, 3.0);
 
-/// Follows the maximum from the first value of the parameter, at which the model is `first`.
+/// Follows the largest damping ratio from the first value of the parameter, at which the model is `first`.
 ///
 /// # Errors
 /// Those of [`nonlinear_mode`]; `Argument` where no contact sticks at small amplitudes and no range was given;
@@ -104,7 +105,7 @@ pub(crate) fn follow(
     let mut tracked = TrackedDamping::new(
         (model, parameter),
         (&options, branch.response_dof()),
-        (range.start, range.stop),
+        Range::new(range.start, range.stop),
         (linear, gauge),
         ((&begin, own.length()), omega, at),
         (to, interrupt),
@@ -113,7 +114,12 @@ pub(crate) fn follow(
     let reduction = resolution.condensed.reduction_with(first, solver, 0);
     let highest = if levels.is_automatic() { 0 } else { solver.harmonics };
     let mut found = Branch::new(resolution, reduction, highest, branch.response_dof())?;
-    found.set_mode(ModeData::new(data.info.clone(), linear.clone(), gauge.clone(), ends));
+    found.set_mode(ModeData::new(
+        data.info.clone(),
+        linear.clone(),
+        gauge.clone(),
+        ends.into(),
+    ));
     let mut data = ParameterData::default();
     let recorder = CurveRecorder::new(
         Followed::new(&mut tracked, (&levels, level), settings, interrupt),
@@ -128,11 +134,11 @@ pub(crate) fn follow(
     Ok(found)
 }
 
-/// The result of a run that was stopped while it followed the mode of the first value: it has no point.
+/// The result of a run that was stopped while it followed the mode at the first value: it has no point.
 fn without_points(first: &Model, solver: &SolverOptions, mode: &Branch) -> Result<Branch> {
     let mut found = Branch::stopped(first, solver)?;
     if let Some(data) = mode.mode_data() {
-        let ends = (STUCK, STUCK + 1.0);
+        let ends = Range::new(STUCK, STUCK + 1.0);
         found.set_mode(ModeData::new(
             data.info.clone(),
             data.linear.clone(),
@@ -144,7 +150,7 @@ fn without_points(first: &Model, solver: &SolverOptions, mode: &Branch) -> Resul
     Ok(found)
 }
 
-/// The range of amplitude from the onset of slip, or the branch of a mode that was stopped.
+/// Range of amplitude, as log₁₀, about the onset of slip; or the branch of a mode that was stopped.
 fn from_onset<'a>(
     first: &Model,
     solver: &SolverOptions,

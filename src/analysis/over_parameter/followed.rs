@@ -17,19 +17,19 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the harmonics";
 
-/// A result over a parameter with the harmonics to choose from.
+/// A result over a parameter, with the levels of harmonics to choose from.
 pub(crate) struct Followed<'a> {
     tracked: &'a mut dyn Tracked,
     levels: &'a HarmonicLevels<'a>,
     level: usize,
     settings: Settings,
     interrupt: &'a Interrupt<'a>,
-    /// Error of the point estimated last, until it is taken.
+    /// Error of the point estimated last, until it is read; NaN afterwards.
     estimated: f64,
 }
 
 impl<'a> Followed<'a> {
-    /// The result, whose problem has the harmonics of a level.
+    /// A result whose problem has the harmonics of a level.
     pub fn new(
         tracked: &'a mut dyn Tracked,
         (levels, level): (&'a HarmonicLevels<'a>, usize),
@@ -46,12 +46,12 @@ impl<'a> Followed<'a> {
         }
     }
 
-    /// The result.
+    /// The result that is followed over the parameter.
     pub fn tracked(&mut self) -> &mut dyn Tracked {
         self.tracked
     }
 
-    /// The error of the point estimated last; NaN the next time.
+    /// Reads the error of the point estimated last, which is NaN afterwards.
     pub fn take_error(&mut self) -> f64 {
         core::mem::replace(&mut self.estimated, f64::NAN)
     }
@@ -60,8 +60,8 @@ impl<'a> Followed<'a> {
         Ok(self.levels.at(level)?.condensed.set())
     }
 
-    /// The error of a point whose solution at a fixed frequency is not isolated, as in a fold: the difference from the
-    /// solution with twice as many harmonics, or more where the structure is compliant in them.
+    /// The error of a point whose solution at a fixed frequency is not isolated, as in a fold: the difference from
+    /// the solution with at least twice as many harmonics, more where the structure is compliant in these.
     fn compare(&mut self, point: &Point) -> Result<Assessment> {
         let from = self.level;
         let to = self.levels.level_of_double(from).min(self.levels.last());
@@ -172,7 +172,7 @@ impl Discretised for Followed<'_> {
         }
     }
 
-    /// Points over a parameter are few: each is estimated.
+    /// Always `false`: points over a parameter are few, and each is estimated.
     fn take_over_estimate(&mut self, _point: &Point, _factor: f64) -> Result<bool> {
         Ok(false)
     }

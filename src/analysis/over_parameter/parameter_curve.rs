@@ -15,14 +15,14 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the parameter response";
 
-/// A point beside the curve.
+/// Kind of a point beside the curve.
 #[derive(Clone, Copy)]
 enum Beside {
-    /// At a requested value.
+    /// The solution at the requested value with this index.
     At(usize),
-    /// With the smallest or largest result.
+    /// The smallest or largest result.
     Optimum { is_maximum: bool },
-    /// With the smallest or largest parameter.
+    /// The smallest or largest parameter, where the curve turns.
     Turn { is_maximum: bool },
 }
 
@@ -43,18 +43,18 @@ struct Located {
     error: f64,
 }
 
-/// The first value, values to store, and the most points.
+/// Start of the curve, values at which to store solutions, and limits.
 #[derive(Clone, Copy)]
 pub(crate) struct Wanted<'a> {
     /// Value of the parameter at the first point, within the range.
     pub begin: f64,
     pub at: &'a [f64],
     pub max_points: usize,
-    /// Tolerance that chooses the harmonics; 0: none.
+    /// Tolerance that selects the harmonics; 0: a fixed number.
     pub tolerance: f64,
 }
 
-/// Records a curve.
+/// Records one curve over the parameter.
 pub(crate) struct CurveRecorder<'a> {
     followed: Followed<'a>,
     settings: Settings,
@@ -68,7 +68,7 @@ pub(crate) struct CurveRecorder<'a> {
 }
 
 impl<'a> CurveRecorder<'a> {
-    /// For an empty branch.
+    /// A recorder for an empty branch.
     pub fn new(
         followed: Followed<'a>,
         (settings, wanted): (Settings, Wanted<'a>),
@@ -167,7 +167,7 @@ impl<'a> CurveRecorder<'a> {
         }
     }
 
-    /// Locates turns, requested values and optima between two neighbours, each with its level.
+    /// Locates turns, requested values and optima between two neighbours, each with its level of harmonics.
     fn locate(&mut self, (a, level_a): (&Point, usize), (b, level_b): (&Point, usize)) -> Result<()> {
         if !SpecialPoint::Fold.between(a, b) {
             return self.locate_without_turn((a, level_a), (b, level_b));
@@ -219,7 +219,7 @@ impl<'a> CurveRecorder<'a> {
         Ok(())
     }
 
-    /// Searches between two neighbours, with the harmonics that the point requires.
+    /// Searches for a point between two neighbours, with the harmonics that this point requires.
     fn find(
         &mut self,
         beside: Beside,
@@ -272,7 +272,7 @@ impl<'a> CurveRecorder<'a> {
         Ok(())
     }
 
-    /// Notes whether the error of the harmonics or that of sampled forces misses the tolerance; one that is not known does.
+    /// Notes whether the error of the harmonics or of sampled forces misses the tolerance; an unknown error does.
     fn note(&mut self, error: f64, sampling_error: f64) {
         let tolerance = self.wanted.tolerance;
         let meets = error <= tolerance && sampling_error <= largest_change(tolerance);
@@ -329,7 +329,7 @@ impl<'a> CurveRecorder<'a> {
     }
 }
 
-/// A point with its result, or for a minimum with the reciprocal of it.
+/// A point whose observed number is its result or, for a minimum, the reciprocal.
 fn sensed(point: &Point, is_maximum: bool) -> Result<Point> {
     let mut copy = point.try_clone()?;
     if !is_maximum {

@@ -13,16 +13,16 @@ pub enum Follow {
     Omega(f64),
     /// The peak next to this angular frequency, within a tenth of it.
     Peak(f64),
-    /// The same peak, also beyond the values at which it vanishes: there it meets a minimum, and the curve turns and goes on along that.
-    /// The peak of a detached curve, the minimum on it and the peak of the curve beneath are one curve over the force, whose
-    /// [`turns`](crate::Branch::turns) are the forces of birth and merging.
+    /// As `Peak`, also beyond the values at which the peak vanishes: there it meets a minimum, and the curve turns
+    /// and goes on along that. The peak of a detached curve, the minimum on it and the peak of the curve beneath are
+    /// one curve over the force, whose [`turns`](crate::Branch::turns) are the forces of birth and merging.
     PeakThroughFolds(f64),
     /// The fold over the frequency next to this angular frequency, within a tenth of it.
     Fold(f64),
     /// The largest damping ratio along the nonlinear mode whose linear mode with stuck contacts is next to this angular
     /// frequency.
     ModeMaxDamping {
-        /// Angular frequency near that of the mode.
+        /// Angular frequency near that of the linear mode.
         omega: f64,
         /// log₁₀ of the modal amplitudes between which the maximum is sought at the first value; `None`: from the onset
         /// of slip to a thousand times its amplitude.

@@ -13,6 +13,7 @@ use crate::harmonics::harmonic_levels::HarmonicLevels;
 use crate::hooks::Hooks;
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
+use crate::options::Range;
 use crate::options::{ForcedOptions, Response, SolverOptions, check_responses};
 use crate::results::{Branch, HigherPeak, ParameterData, Special};
 use crate::sensitivity::{Parameter, ResponsePoint, TrackedResponse, design};
@@ -117,7 +118,7 @@ pub fn parameter_response(
     Ok(found)
 }
 
-/// The error of a point that is found by second derivatives, which sampled forces do not have.
+/// The error for a point that is found by second derivatives, which sampled forces do not have.
 fn needs_events(samples: usize) -> Error {
     Error::new(
         Status::Argument,
@@ -127,7 +128,7 @@ fn needs_events(samples: usize) -> Error {
     )
 }
 
-/// Follows a point of a forced response.
+/// Follows a peak, a fold, or a point at a fixed frequency of a forced response.
 fn follow(
     (model, first, parameter): (&Model, &Model, Parameter<'_>),
     solver: &SolverOptions,
@@ -188,7 +189,8 @@ fn follow(
     )
 }
 
-/// Follows a point of a branch of the model with a first value of the parameter, which may lie within the range.
+/// Follows a point of a branch that was computed for the first value of the parameter; this value may lie within the
+/// range.
 pub(crate) fn follow_from(
     (model, first, parameter): (&Model, &Model, Parameter<'_>),
     solver: &SolverOptions,
@@ -219,7 +221,7 @@ pub(crate) fn follow_from(
     let mut tracked = TrackedResponse::new(
         (model, parameter),
         (&options, branch.response_dof(), range.response),
-        (range.start, range.stop),
+        Range::new(range.start, range.stop),
         (&start, own.length(), omega),
         kind,
         interrupt,
@@ -240,7 +242,7 @@ pub(crate) fn follow_from(
     Ok(found)
 }
 
-/// A sweep between shares of a frequency.
+/// Options of a sweep from `start` to `stop`, both as multiples of a frequency.
 fn sweep<'a>(((start, stop), omega): ((f64, f64), f64), responses: &'a [Response<'a>]) -> ForcedOptions<'a> {
     ForcedOptions {
         omega_start: start * omega,
@@ -250,7 +252,8 @@ fn sweep<'a>(((start, stop), omega): ((f64, f64), f64), responses: &'a [Response
     }
 }
 
-/// The point of a kind that is nearest to a frequency; `None` where none is within [`PARAMETER_RESPONSE_NEAR`] of it.
+/// Index of the special point of a kind nearest to a frequency; `None` where none is within
+/// [`PARAMETER_RESPONSE_NEAR`] of it.
 fn nearest((branch, kind): (&Branch, ResponsePoint), omega: f64) -> Option<usize> {
     let list = match kind {
         ResponsePoint::Fixed => return (branch.points() > 0).then_some(0),
@@ -262,7 +265,8 @@ fn nearest((branch, kind): (&Branch, ResponsePoint), omega: f64) -> Option<usize
     (distance(&near) <= PARAMETER_RESPONSE_NEAR * omega.abs()).then_some(near.point)
 }
 
-/// Reason of a peak that vanished: the highest peak that the response shows a little beyond the last value, if it has one.
+/// Explains why a peak vanished: names the highest peak of the response a little beyond the last value, if it has
+/// one.
 fn where_next(
     (model, parameter): (&Model, Parameter<'_>),
     solver: &SolverOptions,

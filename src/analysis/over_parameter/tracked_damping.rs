@@ -20,6 +20,7 @@ use crate::linalg::factors::lu::Lu;
 use crate::linalg::newton::linear_system::Jacobian;
 use crate::linalg::{dot, norm};
 use crate::model::Model;
+use crate::options::Range;
 use crate::options::{DampingForm, SolverOptions};
 use crate::problem::epmc::{Epmc, Gauge, LinearMode};
 use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
@@ -40,7 +41,7 @@ const AMPLITUDE_UNIT: f64 = 0.1;
 /// Kind: tuned; measured on: not recorded.
 const MODE_STEP: f64 = 1e-4;
 
-/// The largest damping ratio over a parameter.
+/// The largest damping ratio of a nonlinear mode over a parameter.
 pub(crate) struct TrackedDamping<'a> {
     model: &'a Model,
     parameter: Parameter<'a>,
@@ -49,12 +50,17 @@ pub(crate) struct TrackedDamping<'a> {
     /// The linear mode at the first value, whose frequency, damping and shape give the units at all values.
     linear: &'a LinearMode,
     gauge: &'a Gauge,
-    /// log₁₀ of the amplitude where its unknown is 0.
+    /// Amplitude, as log₁₀, at which its unknown is 0.
     log10_amplitude: f64,
-    /// Unit of lengths of the unknowns.
+    /// Unit of length of the motions among the unknowns.
     length: f64,
     unknowns: Unknowns,
     interrupt: &'a Interrupt<'a>,
+    last: LastDamping,
+}
+
+/// Result of the point evaluated last.
+pub(crate) struct LastDamping {
     /// Damping ratio at the point evaluated last, its derivative by the parameter, and its second one along the mode.
     damping: f64,
     d_damping: f64,
@@ -77,7 +83,7 @@ impl<'a> TrackedDamping<'a> {
     pub fn new(
         (model, parameter): (&'a Model, Parameter<'a>),
         (solver, response_dof): (&SolverOptions, usize),
-        range: (f64, f64),
+        range: Range,
         (linear, gauge): (&'a LinearMode, &'a Gauge),
         ((motion, length), omega, point): ((&[f64], f64), f64, ModePoint),
         (set, interrupt): (&HarmonicSet, &'a Interrupt<'a>),
@@ -105,13 +111,15 @@ impl<'a> TrackedDamping<'a> {
             length,
             unknowns: Unknowns::new(start, range)?,
             interrupt,
-            damping: 0.0,
-            d_damping: 0.0,
-            curvature: f64::NAN,
+            last: LastDamping {
+                damping: 0.0,
+                d_damping: 0.0,
+                curvature: f64::NAN,
+            },
         })
     }
 
-    /// log₁₀ of the amplitude that belongs to unknowns.
+    /// Amplitude, as log₁₀, from the unknowns.
     fn log10(&self, u: &[f64]) -> f64 {
         self.log10_amplitude + AMPLITUDE_UNIT * u[u.len() - 1]
     }
@@ -139,7 +147,7 @@ impl<'a> TrackedDamping<'a> {
         })
     }
 
-    /// Unknowns of the mode in the unit of lengths of a condensed model.
+    /// Unknowns of the mode in the unit of length of a condensed model.
     fn own(&self, u: &[f64], condensed: &Condensed) -> Result<Vec<f64>> {
         let mut own = try_copy(&u[..u.len() - 1], CONTEXT)?;
         for y in &mut own[..self.motions()] {
@@ -148,7 +156,7 @@ impl<'a> TrackedDamping<'a> {
         Ok(own)
     }
 
-    /// Packed relative motions of unknowns, static ones included.
+    /// Packed relative motions from the unknowns: about the static state, and in total.
     fn motion(&self, own: &[f64], log10: f64, at: &At) -> Result<(Vec<f64>, Vec<f64>)> {
         let mut vibration = try_copy(&own[..self.motions()], CONTEXT)?;
         for y in &mut vibration {
@@ -205,7 +213,7 @@ impl<'a> TrackedDamping<'a> {
             *t = -*t;
         }
         let row = maximum_row(&mut problem, (&own, log10), &tangent, &lambda)?;
-        self.curvature = dot(&row[..x], &tangent) + row[x];
+        self.last.curvature = dot(&row[..x], &tangent) + row[x];
         self.unknowns.matrix.fill(0.0);
         // Motions are in another unit than those of the condensed model.
         let of = |i: usize| if i < m { unit } else { 1.0 };
@@ -221,8 +229,8 @@ impl<'a> TrackedDamping<'a> {
             *to = AMPLITUDE_UNIT * from / of(i);
         }
         last[x] = AMPLITUDE_UNIT * AMPLITUDE_UNIT * row[x];
-        self.damping = Epmc::frequency_and_damping(&at.linear, &own).1;
-        self.d_damping = self.by_parameter(&own, log10, p, &at)?;
+        self.last.damping = Epmc::frequency_and_damping(&at.linear, &own).1;
+        self.last.d_damping = self.by_parameter(&own, log10, p, &at)?;
         Ok(here.scale)
     }
 
@@ -399,18 +407,18 @@ impl Tracked for TrackedDamping<'_> {
             iterations: point.iterations,
             slip_fractions: equations.problem.forces().slip_fractions(),
             sampling_error,
-            errors: (f64::NAN, error * self.damping.abs()),
+            errors: (f64::NAN, error * self.last.damping.abs()),
             seen: &[],
         };
         branch.push_followed(kind, &record)?;
         if let Some(modes) = branch.mode_data_mut() {
             modes.push(mode)?;
         }
-        data.push(p, (f64::NAN, self.d_damping))?;
+        data.push(p, (f64::NAN, self.last.d_damping))?;
         let special = Special {
             point: branch.stored() - 1,
             omega,
-            amplitude: self.damping,
+            amplitude: self.last.damping,
         };
         Ok((special, sampling_error))
     }
@@ -422,7 +430,7 @@ impl Tracked for TrackedDamping<'_> {
     fn exists(&mut self, point: &Point) -> Result<bool> {
         let mut values = try_vec(point.unknowns().len(), 0.0, CONTEXT)?;
         self.equations(point.unknowns(), point.parameter(), true, &mut values)?;
-        Ok(self.curvature <= 0.0)
+        Ok(self.last.curvature <= 0.0)
     }
 }
 
@@ -447,10 +455,10 @@ impl Problem for TrackedDamping<'_> {
         Ok(())
     }
 
-    /// The damping ratio, which in its maximum changes with the parameter alone.
+    /// Observes the damping ratio. At its maximum it changes with the parameter alone.
     fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
-        let change = self.d_damping * direction[u.len()];
-        self.unknowns.observe(self.damping, change)
+        let change = self.last.d_damping * direction[u.len()];
+        self.unknowns.observe(self.last.damping, change)
     }
 
     fn initial_guess(&mut self, kind: InitialGuess, _p: f64, u: &mut [f64]) -> Result<bool> {

@@ -19,23 +19,23 @@ use num_complex::Complex64;
 pub(crate) struct BranchStability<'a> {
     model: &'a Model,
     options: FloquetOptions,
-    /// Whether the motion is integrated on all degrees of freedom.
+    /// Whether the motion is integrated on all degrees of freedom, not on modes.
     pub on_all_degrees: bool,
-    /// Modes of a large structure.
+    /// Modes of a large structure, kept for the next point.
     modes: KeptModes,
     interrupt: &'a Interrupt<'a>,
-    /// Difference of the state in time and that of the harmonics at the point solved last.
+    /// Difference between the state in time and the state by harmonics, at the point solved last.
     difference: Option<State>,
-    /// The points of the curve recorded last, the last one at the end.
+    /// Stability of the last two recorded points of the curve, the last one at the end.
     last: [Option<Verdict>; 2],
-    /// Frequency of the last one, where all contacts were linear there.
+    /// Frequency of the last point, if all contacts were linear there; else `None`.
     linear: Option<f64>,
-    /// Whether the last two were given to the search for bifurcations.
+    /// Whether the stability of the last two points was handed to the search for bifurcations.
     taken: bool,
 }
 
 impl<'a> BranchStability<'a> {
-    /// No point yet. Models that cannot be integrated in time are refused.
+    /// Prepares for the points of a model. Models that cannot be integrated in time are refused.
     pub fn new(model: &'a Model, waves: Waves, omega: f64, interrupt: &'a Interrupt<'a>) -> Result<Self> {
         let options = FloquetOptions {
             waves,
@@ -59,7 +59,7 @@ impl<'a> BranchStability<'a> {
         })
     }
 
-    /// The same for the next point of the curve, at which every contact may be linear.
+    /// Stability of the next point of the curve, at which every contact may be `linear`.
     pub fn along(
         &mut self,
         resolution: &Resolution,
@@ -79,7 +79,7 @@ impl<'a> BranchStability<'a> {
         Ok(self.last[1].insert(verdict))
     }
 
-    /// The last two points, once.
+    /// Stability of the last two points of the curve; only at the first call.
     pub fn take_last(&mut self) -> Option<(Verdict, Verdict)> {
         if core::mem::replace(&mut self.taken, true) {
             return None;
@@ -88,14 +88,15 @@ impl<'a> BranchStability<'a> {
         Some((before.clone()?, after.clone()?))
     }
 
-    /// Stability of the motion of a solved point that need not lie on the curve; `fine`: its motion with more harmonics.
+    /// Stability of the motion of a solved point that need not lie on the curve; `fine` is its motion with more
+    /// harmonics.
     pub fn at(&mut self, resolution: &Resolution, point: &Point, fine: Option<&[Complex64]>) -> Result<Verdict> {
         self.solve(resolution, point, fine, false)
     }
 
-    /// Stability of the motion of a solved point. The multipliers are those of the motion in time that shooting finds
-    /// near it, to its tolerance or (not `quick`) to round-off; of the path of the point itself where it finds none, as
-    /// near a fold.
+    /// Stability of the motion of a solved point. The multipliers belong to the motion in time that shooting finds
+    /// near the point, to its tolerance or (not `quick`) to round-off; where it finds none, as near a fold, to the
+    /// path of the point itself.
     fn solve(
         &mut self,
         resolution: &Resolution,
@@ -160,8 +161,8 @@ fn verdict(stability: &Floquet, in_time: bool) -> Result<Verdict> {
     })
 }
 
-/// Stability at another frequency where the contacts remain in the same linear state: perturbations grow by the same
-/// e^{λt}, over a period that is `periods` times as long.
+/// Stability at another frequency, with the contacts in the same linear state as at the last point: perturbations
+/// grow by the same e^{λt}, over a period that is `periods` times as long.
 fn with_linear_contacts(last: &Verdict, periods: f64) -> Result<Verdict> {
     let mut multipliers = Vec::new();
     for m in &last.multipliers {

@@ -10,6 +10,7 @@ use crate::contact::{Contact, Role};
 use crate::error::{Result, fail, try_copy, try_extend, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::fallible_matrix::{filled, zero_vector};
+use crate::linalg::libraries::DVector;
 use crate::model::Model;
 use crate::model::few_motions::on_modes::forces_of_harmonics;
 use crate::model::matrices::structure::Structure;
@@ -21,7 +22,6 @@ use crate::stability::{
     orbit, scale_of_sliders,
 };
 use crate::time_integration::Number;
-use nalgebra::DVector;
 use num_complex::Complex64;
 use std::f64::consts::{SQRT_2, TAU};
 
@@ -31,14 +31,14 @@ const CONTEXT: &str = "the contacts on modes";
 /// Kind: tuned; measured on: not recorded.
 const SLIDERS_POINTS_PER_WAVE: usize = 64;
 
-/// Modes of all diameters, and the sliders.
+/// Modes of the stuck structure for all nodal diameters, and the sliders.
 pub(crate) struct SliderModes {
     sliders: Sliders,
     modes: Vec<Option<ContactModes>>,
     requested: usize,
 }
 
-/// The active contacts, if all are sliders under constant loads.
+/// The active contacts as sliders; `None` unless all are sliders under constant loads.
 fn sliders_of(model: &Model) -> Result<Option<(Vec<&Contact>, Sliders)>> {
     let mut sliders = Sliders {
         stiffness: Vec::new(),
@@ -68,7 +68,7 @@ fn sliders_of(model: &Model) -> Result<Option<(Vec<&Contact>, Sliders)>> {
     Ok(Some((contacts, sliders)))
 }
 
-/// Whether a model can be computed on modes and sliders.
+/// Whether the contacts of a model allow equations on modes and sliders.
 pub(crate) fn are_sliders(model: &Model) -> Result<bool> {
     let structure = model.structure();
     let Some((contacts, _)) = sliders_of(model)? else {
@@ -78,7 +78,7 @@ pub(crate) fn are_sliders(model: &Model) -> Result<bool> {
 }
 
 impl SliderModes {
-    /// At most `modes` modes of each nodal diameter that is a multiple of `step`.
+    /// Prepares at most `modes` modes of each nodal diameter that is a multiple of `step`.
     ///
     /// # Errors
     /// As [`ContactModes::new`].
@@ -118,17 +118,17 @@ impl SliderModes {
         })
     }
 
-    /// Number of modes that every diameter has.
+    /// Number of modes available for every diameter.
     pub fn modes(&self) -> usize {
         self.modes.iter().flatten().map(ContactModes::modes).min().unwrap_or(0)
     }
 
-    /// Whether it has this number of modes, or all that there are, and they are fewer.
+    /// Whether these modes are at least as many as given, or all that the structure has.
     pub fn suffices(&self, modes: usize) -> bool {
         self.requested == modes || (self.modes() < self.requested && self.modes() <= modes)
     }
 
-    /// Largest number of modes of a diameter below an angular frequency.
+    /// Largest number of modes of one diameter below an angular frequency.
     pub fn modes_below(&self, omega: f64) -> usize {
         let below = |seen: &ContactModes| seen.omega.iter().filter(|&&x| x < omega).count();
         self.modes.iter().flatten().map(below).max().unwrap_or(0)
@@ -143,7 +143,7 @@ fn conjugate(values: &mut [Complex64], conjugated: bool) {
     }
 }
 
-/// The multipliers of a motion on a number of modes; `StoppedByCaller` is an error.
+/// Floquet multipliers of a motion on a number of modes; `StoppedByCaller` is an error.
 pub(crate) fn perturbed_sliders(
     model: &Model,
     (seen, modes): (&SliderModes, usize),
@@ -205,7 +205,7 @@ pub(crate) fn perturbed_sliders(
     })
 }
 
-/// The multipliers of a block.
+/// Floquet multipliers of one block of perturbations.
 fn multipliers<T: Number>(
     structure: &Structure,
     ring: &ModalRing<T>,
@@ -229,7 +229,7 @@ fn multipliers<T: Number>(
     classified(matrix, &counts, (lapses, turn), closure.has_conjugate, interrupt)
 }
 
-/// Harmonics of the independent degrees of freedom.
+/// Harmonics of the independent degrees of freedom, from those of all of the caller's.
 fn independent(structure: &Structure, harmonics: &[Complex64]) -> Result<Vec<Vec<Complex64>>> {
     let degrees = structure.degrees();
     let mut found = Vec::new();
@@ -257,8 +257,9 @@ fn is_odd(model: &Model, harmonics: &[Vec<Complex64>]) -> Result<bool> {
     Ok((0..harmonics.len()).step_by(2).all(|h| size(h) <= ODD * largest))
 }
 
-/// Amplitudes on the coordinates of a ring from those on the modes of a harmonic: of φᴴF, or of φᴴF̄ where its wave travels
-/// backward. With x_s = Re(X e^{−iδs} e^{ihωt}) the wave δ has the coordinate √m/2 φᴴMX e^{ihωt}, and the other sense its conjugate.
+/// Amplitudes on the coordinates of a ring from amplitudes on the modes of a harmonic: φᴴF, or φᴴF̄ where its wave
+/// travels backward. With x_s = Re(X e^{−iδs} e^{ihωt}) the wave δ has the coordinate √m/2 φᴴMX e^{ihωt}, and the
+/// wave of the other sense its conjugate.
 fn on_ring(ring: &ModalRing<f64>, (diameter, backward): (usize, bool), modal: &[Complex64]) -> Result<Vec<Complex64>> {
     let mut found = try_vec(ring.order(), Complex64::ZERO, CONTEXT)?;
     let sectors = (ring.closure.sectors as f64).sqrt();
@@ -281,7 +282,7 @@ fn on_ring(ring: &ModalRing<f64>, (diameter, backward): (usize, bool), modal: &[
     Ok(found)
 }
 
-/// The forces of the model on coordinates, and on relative motions that the modes leave out.
+/// The forces of the model on the modal coordinates, and on the relative motions that the modes leave out.
 fn forces_on(
     structure: &Structure,
     ring: &ModalRing<f64>,
@@ -317,7 +318,8 @@ fn forces_on(
     Ok(found)
 }
 
-/// The state at time 0 of a motion given by its harmonics; each slider has its place after two periods from rest.
+/// The state at time 0 of a motion given by its harmonics. Each slider has the place that it reaches after two
+/// periods from its unloaded place.
 fn state_of_motion(
     structure: &Structure,
     ring: &ModalRing<f64>,

@@ -73,7 +73,7 @@ fn wheel(engine_order: i64, mean: f64) -> Model {
     model
 }
 
-/// The multipliers on all degrees of freedom, and those on some numbers of modes.
+/// The multipliers on all degrees of freedom, and those on each of some numbers of modes.
 fn both(model: &Model, omega: f64, waves: Waves, modes: &[usize]) -> (Floquet, Vec<Floquet>) {
     let solver = SolverOptions {
         harmonics: 15,
@@ -125,7 +125,7 @@ fn both(model: &Model, omega: f64, waves: Waves, modes: &[usize]) -> (Floquet, V
     (all.stability, found)
 }
 
-/// Every large multiplier of the one is one of the other.
+/// Largest distance of a large multiplier in `a` from the nearest one in `b`.
 fn largest_gap(a: &Floquet, b: &Floquet) -> f64 {
     let gap = |x: Complex64| {
         b.multipliers
@@ -201,8 +201,8 @@ fn sliders_of_further_waves_have_the_multipliers_of_all_degrees_of_freedom() {
     }
 }
 
-/// On few modes contacts next to each other are coupled by what these leave out: a slider that begins to slip may stop another one
-/// while it moves, and the time of that follows from the first.
+/// On few modes neighbouring contacts are coupled by the motions that these leave out: a slider that begins to slip
+/// may stop another one while it moves, and the time of that follows from the first.
 #[test]
 fn the_map_of_coupled_sliders_is_the_difference_of_neighbouring_motions() {
     let mut model = plain();

@@ -37,31 +37,31 @@ const DOUBLINGS: usize = 4;
 /// Kind: tuned; measured on: not recorded.
 const CUTOFF: f64 = 5.0;
 
-/// Shapes and small models that points of one branch share.
+/// Mode shapes and reduced models that the points of one branch share.
 #[derive(Default)]
 pub(crate) struct KeptModes {
     shapes: Option<Arc<ShapesOfWaves>>,
     small: Vec<(usize, OnModes)>,
-    /// Modes at which the last two numbers agreed.
+    /// Number of modes at which the last comparison agreed.
     last: Option<usize>,
-    /// Modes as contacts see them.
+    /// Modes with the sliders of the contacts, one entry for each number of modes.
     sliders: Vec<SliderModes>,
     way: Option<Way>,
 }
 
-/// States of a motion and its perturbations.
+/// Coordinates on which a motion and its perturbations are integrated.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Way {
-    /// All degrees of freedom.
+    /// All degrees of freedom of the structure.
     All,
     /// Degrees of freedom of the contacts, and modes.
     Shapes,
-    /// Modes, and sliders.
+    /// Modes of the stuck structure, and sliders.
     Sliders,
 }
 
 impl KeptModes {
-    /// Whether the motion is computed on all degrees of freedom, by the operations counted.
+    /// Whether the motion is integrated on all degrees of freedom, by a count of operations.
     ///
     /// # Errors
     /// `OutOfMemory`; `Argument` for a nodal diameter that was not given.
@@ -88,7 +88,7 @@ impl KeptModes {
         Ok(way)
     }
 
-    /// The model on a number of modes, or on all that there are.
+    /// The model reduced to a number of modes, or to all modes if there are fewer.
     fn on(&mut self, model: &Model, modes: usize, waves: Waves, interrupt: &Interrupt<'_>) -> Result<&OnModes> {
         let enough = self
             .shapes
@@ -117,7 +117,7 @@ impl KeptModes {
         Ok(&self.small[at].1)
     }
 
-    /// A number of modes as contacts see them, or all that there are.
+    /// The modes and sliders with a number of modes, or with all modes if there are fewer.
     fn seen(&mut self, model: &Model, modes: usize, waves: Waves, interrupt: &Interrupt<'_>) -> Result<&SliderModes> {
         let known = self.sliders.iter().position(|seen| seen.suffices(modes));
         let at = known.unwrap_or(self.sliders.len());
@@ -129,7 +129,7 @@ impl KeptModes {
     }
 }
 
-/// Distance of the nodal diameters that perturbations have.
+/// Distance between the nodal diameters that perturbations can have.
 fn step_of_waves(model: &Model, waves: Waves) -> usize {
     match waves {
         Waves::Wave => model.structure().sectors() / model.structure().repeating_sectors(),
@@ -137,7 +137,7 @@ fn step_of_waves(model: &Model, waves: Waves) -> usize {
     }
 }
 
-/// The multipliers of a motion; `StoppedByCaller` is an error.
+/// Floquet multipliers of a motion; `StoppedByCaller` is an error.
 pub(crate) fn floquet_of(
     model: &Model,
     motion: &Motion<'_>,
@@ -155,7 +155,7 @@ pub(crate) fn floquet_of(
     }
 }
 
-/// The same on the states that are quickest.
+/// Floquet multipliers of a motion, on the coordinates with the fewest operations.
 fn on_quickest(
     model: &Model,
     motion: &Motion<'_>,
@@ -225,7 +225,7 @@ fn on_quickest(
     )
 }
 
-/// The multipliers on a number of modes, or on all that there are.
+/// Floquet multipliers on a number of modes, or on all modes if there are fewer.
 fn on_a_number(
     model: &Model,
     motion: &Motion<'_>,
@@ -259,7 +259,7 @@ fn log_radius(hooks: &mut Hooks<'_>, stability: &Floquet) {
     );
 }
 
-/// The modes below a multiple of the frequency of the highest force.
+/// Number of modes below a multiple of the frequency of the highest force.
 fn first_number(
     model: &Model,
     omega: f64,
@@ -292,7 +292,7 @@ fn first_number(
     }
 }
 
-/// Refuses what integration in time refuses, without its equations.
+/// Refuses models that cannot be integrated in time, without setting up their equations.
 fn refuse(model: &Model, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
     let structure = model.structure();
     refuse_structural_damping(structure, omega)?;
@@ -311,7 +311,8 @@ fn refuse(model: &Model, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
     Ok(())
 }
 
-/// The states on which operations are few: all, if so or if fewer than those with modes; then degrees of freedom of contacts.
+/// The coordinates with the fewest operations: all degrees of freedom if these take few, or fewer than modes; then
+/// contacts' degrees of freedom with modes.
 fn quickest(model: &Model, omega: f64, waves: Waves) -> Result<Way> {
     let structure = model.structure();
     let sectors = structure.repeating_sectors() as f64;
@@ -345,7 +346,8 @@ fn quickest(model: &Model, omega: f64, waves: Waves) -> Result<Way> {
     Ok(if whole_is_less { Way::All } else { Way::Shapes })
 }
 
-/// Blocks of the wheel with even ones and odd ones, one of each pair of conjugate ones.
+/// Number of blocks into which the perturbations of a wheel split: even and odd ones, counting one of each conjugate
+/// pair.
 fn blocks_of_wheel(structure: &Structure) -> f64 {
     (structure.sectors() / structure.repeating_sectors() / 2 + 1) as f64
 }

@@ -50,24 +50,24 @@ const KICKED_GROWTH: usize = 200;
 /// Kind: tuned; measured on: not recorded.
 const KICKED_NEUTRAL: f64 = 1e-4;
 
-/// End of a kicked motion.
+/// Outcome of a kicked motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Side {
-    /// It comes back.
+    /// The motion comes back to where it was.
     Returns,
-    /// It does not.
+    /// The motion crosses to the other side of the saddle, and does not come back.
     Across,
 }
 
-/// The two motions at one phase.
+/// The stable motion and the saddle at one phase of the forces.
 pub(crate) struct Kicked<'a> {
     system: System<'a>,
     event_loop: EventLoop,
     lower: State,
     saddle: State,
-    /// Distance of the two.
+    /// Distance between both motions.
     gap: f64,
-    /// Velocities by a unit impulse, and that of the degree of freedom itself.
+    /// Velocities of all degrees of freedom after a unit impulse; and the velocity of the kicked one.
     kick: Vec<f64>,
     mobility: f64,
     estimate: f64,
@@ -75,7 +75,7 @@ pub(crate) struct Kicked<'a> {
 }
 
 impl<'a> Kicked<'a> {
-    /// The motions with the harmonics of the two points, when the forces have a phase.
+    /// Shoots for both motions from the harmonics of the two points, at a phase of the forces.
     pub fn new(
         (model, omega, dof): (&Model, f64, usize),
         (lower, between): (&[Complex64], &[Complex64]),
@@ -152,13 +152,13 @@ impl<'a> Kicked<'a> {
         })
     }
 
-    /// The same with the tolerance of shooting.
+    /// Repeats the shooting with a tight tolerance.
     pub fn tight(mut self) -> Result<Self> {
         self.event_loop = EventLoop::new(&self.system, TIGHT)?;
         Ok(self)
     }
 
-    /// Impulse that leads to the stable surface of the saddle to first order.
+    /// Impulse, to first order, that leads to the stable surface of the saddle.
     pub fn estimate(&self) -> f64 {
         self.estimate
     }
@@ -168,7 +168,7 @@ impl<'a> Kicked<'a> {
         self.multiplier
     }
 
-    /// Velocity of the degree of freedom by a unit impulse.
+    /// Velocity of the kicked degree of freedom after a unit impulse.
     pub fn mobility(&self) -> f64 {
         self.mobility
     }
@@ -201,7 +201,7 @@ impl<'a> Kicked<'a> {
     }
 }
 
-/// The impulse on the independent degrees of freedom: the virtual work of one at the caller's.
+/// A unit impulse at a degree of freedom of the caller, on the independent ones, by its virtual work.
 fn impulse(model: &Model, force: &[Complex64], order: usize) -> Result<Vec<f64>> {
     let degrees = model.structure().degrees();
     let mut found = try_vec(order, 0.0, CONTEXT)?;
@@ -220,22 +220,22 @@ fn distance(a: &State, b: &State, omega: f64) -> f64 {
     (square(&a.x, &b.x, 1.0) + square(&a.v, &b.v, 1.0 / omega)).sqrt()
 }
 
-/// The map of a lapse from a motion, velocities over the frequency.
+/// Map of perturbations of a motion over one lapse, with velocities divided by the frequency.
 struct LapseMap<'s> {
     sensitivity: Sensitivity<'s>,
     omega: f64,
-    /// Number of displacements, and of all states.
+    /// Number of displacements; and number of all states.
     extent: (usize, usize),
 }
 
 impl LapseMap<'_> {
-    /// Velocities times 1/ω have the unit of displacements.
+    /// Unit of state i: ω for velocities, 1 for displacements.
     fn unit(&self, i: usize) -> f64 {
         let n = self.extent.0;
         if (n..2 * n).contains(&i) { self.omega } else { 1.0 }
     }
 
-    /// y = B x, or Bᵀ x.
+    /// y ← B x, or y ← Bᵀ x if `transposed`.
     fn apply(&self, transposed: bool, x: &[f64], y: &mut [f64]) {
         for (j, y) in y.iter_mut().enumerate() {
             let entry = |i: usize| {
@@ -246,7 +246,8 @@ impl LapseMap<'_> {
         }
     }
 
-    /// The largest multiplier with its eigenvector, by powers, and whether these converge, as they do to a real one that is alone.
+    /// The largest multiplier with its eigenvector, by the power method; and whether this converges, as it does if
+    /// the multiplier is real and has no equal.
     fn largest(&self, transposed: bool, interrupt: &Interrupt<'_>) -> Result<(Vec<f64>, f64, bool)> {
         let m = self.extent.1;
         let mut w = try_vec(m, 1.0, CONTEXT)?;
@@ -272,8 +273,8 @@ impl LapseMap<'_> {
         Ok((w, multiplier, false))
     }
 
-    /// Growth in a lapse of perturbations without the direction of a multiplier: x ← B x − μ r (w·x)/(w·r) with its left and right
-    /// eigenvectors w and r.
+    /// Growth over a lapse of perturbations without the direction of one multiplier μ: x ← B x − μ r (w·x)/(w·r) with
+    /// its left and right eigenvectors w and r.
     fn growth_without(&self, multiplier: f64, w: &[f64], r: &[f64], interrupt: &Interrupt<'_>) -> Result<f64> {
         let m = self.extent.1;
         let mut x = try_vec(m, 0.0, CONTEXT)?;
@@ -309,7 +310,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// The left eigenvector of the only multiplier of a motion beyond 1, by powers, and this multiplier.
+/// The single multiplier of a motion beyond 1, with its left eigenvector, by the power method.
 fn left_eigenvector(system: &mut System<'_>, event_loop: &mut EventLoop, motion: &State) -> Result<(Vec<f64>, f64)> {
     let mut sensitivity = Sensitivity::new(system)?;
     let mut state = motion.try_clone()?;

@@ -27,24 +27,25 @@ pub(crate) const ODD: f64 = 1e-9;
 pub(crate) struct Motion<'a> {
     pub omega: f64,
     pub harmonics: &'a [Complex64],
-    /// Whether no force drives it.
+    /// Whether the motion is free, without a force.
     pub autonomous: bool,
-    /// Whether the motion in time is compared with the harmonics.
+    /// Whether the motion in time is compared with these harmonics.
     pub compared: bool,
-    /// The motion with more harmonics, from which shooting begins.
+    /// The motion with more harmonics, as the start of shooting; `None`: from these.
     pub fine: Option<&'a [Complex64]>,
-    /// Difference of the state in time and that of the harmonics at a neighbouring point, from which it begins else.
+    /// Difference between the states in time and by harmonics at a neighbouring point, with which shooting begins
+    /// where `fine` is `None`.
     pub difference: Option<&'a State>,
-    /// Whether shooting ends at its tolerance, and does not go on to round-off.
+    /// Whether shooting ends at its tolerance and does not go on to round-off.
     pub quick: bool,
 }
 
 /// Stability of a motion.
 pub(crate) struct Found {
     pub stability: Floquet,
-    /// Distance of the initial state of the motion in time from that of the harmonics, relative to it.
+    /// Distance between the initial states in time and by harmonics, relative to the latter.
     pub shift: f64,
-    /// The difference itself.
+    /// Difference between the initial states in time and by harmonics.
     pub difference: Option<State>,
 }
 
@@ -78,7 +79,7 @@ impl Subject<'_> {
 
     /// Whether forces and laws allow a motion in which sectors half a wave apart move opposite to each other.
     fn allows_halves(&self, system: &System<'_>) -> Result<bool> {
-        if !system.sectors.is_multiple_of(2) || system.loads.iter().any(|load| load.harmonic.is_multiple_of(2)) {
+        if !system.wave.sectors.is_multiple_of(2) || system.loads.iter().any(|load| load.harmonic.is_multiple_of(2)) {
             return Ok(false);
         }
         for contact in self.on_modes.map_or(self.model, |on_modes| &on_modes.model).contacts() {
@@ -89,7 +90,7 @@ impl Subject<'_> {
         Ok(true)
     }
 
-    /// The state at time 0 of the motion, in the space of the modes the state next to it.
+    /// The state of the motion at time 0; on modes, the nearest state that these can represent.
     fn state(&self, system: &System<'_>, harmonics: &[Complex64]) -> Result<State> {
         let Some(on_modes) = self.on_modes else {
             return state_of(self.model, system, harmonics);
@@ -121,7 +122,7 @@ impl Subject<'_> {
     }
 }
 
-/// The multipliers of a motion; `StoppedByCaller` is an error.
+/// Floquet multipliers of a motion; `StoppedByCaller` is an error.
 pub(crate) fn perturbed(
     subject: &Subject<'_>,
     motion: &Motion<'_>,
@@ -205,7 +206,7 @@ pub(crate) fn perturbed(
     })
 }
 
-/// A state that is nearer to the motion in time than that of its harmonics; `None` where none is known.
+/// A state that is nearer to the motion in time than the state by its harmonics; `None` where none is known.
 fn nearest(subject: &Subject<'_>, system: &System<'_>, motion: &Motion<'_>, start: &State) -> Result<Option<State>> {
     if let Some(fine) = motion.fine {
         return subject.state(system, fine).map(Some);
@@ -218,7 +219,7 @@ fn nearest(subject: &Subject<'_>, system: &System<'_>, motion: &Motion<'_>, star
     Ok(Some(begin))
 }
 
-/// Shoots from a state: in half the sectors where the others move opposite to them.
+/// Shoots for a periodic motion from a state; in half the sectors only where the others move opposite to these.
 fn shoot(
     (system, event_loop): (&mut System<'_>, &mut EventLoop),
     subject: &Subject<'_>,
@@ -301,15 +302,15 @@ fn through_a_lapse(
     Ok(Floquet::of(all, grazing))
 }
 
-/// Whether sectors half a wave apart move opposite to each other.
+/// Whether, in a state, sectors half a wave apart move opposite to each other.
 fn is_odd(system: &System<'_>, state: &State) -> bool {
-    if !system.sectors.is_multiple_of(2) {
+    if !system.wave.sectors.is_multiple_of(2) {
         return false;
     }
-    let half = system.sectors / 2;
+    let half = system.wave.sectors / 2;
     let opposite = |values: &[f64], block: usize| {
         let largest = values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let group = block * system.sectors;
+        let group = block * system.wave.sectors;
         values.chunks_exact(group).all(|ring| {
             let (first, second) = ring.split_at(half * block);
             first.iter().zip(second).all(|(a, b)| (a + b).abs() <= ODD * largest)

@@ -41,17 +41,17 @@ const REFINEMENTS: usize = 4;
 pub struct Kick {
     /// `Ok` or `StoppedByCaller`; then the numbers are those found so far, or NaN.
     pub status: Status,
-    /// Impulse that leads to another motion, with its sign; NaN where none was found.
+    /// Smallest impulse found that leads to another motion, with its sign; NaN where none was found.
     pub impulse: f64,
     /// Impulse at the same phase from which the motion returned.
     pub returning: f64,
-    /// Phase ωt of the forces, in 0 .. 2π, at which this impulse acts.
+    /// Phase ωt of the forces, in 0 .. 2π, at which the impulse acts.
     pub phase: f64,
-    /// Smallest impulse to first order, from the left eigenvector of the saddle, and its phase.
+    /// Smallest impulse to first order, from the left eigenvector of the saddle.
     pub estimate: f64,
-    /// The same.
+    /// Phase ωt of the forces at which the impulse `estimate` acts.
     pub estimate_phase: f64,
-    /// Velocity that the impulse gives the degree of freedom.
+    /// Velocity of the degree of freedom that the impulse causes.
     pub velocity: f64,
     /// Multiplier of the saddle in its unstable direction.
     pub multiplier: f64,
@@ -159,7 +159,7 @@ fn harmonics(
     Ok((omega, Recovery::at(branch, point, interrupt)?.all(branch.harmonics())?))
 }
 
-/// A search over phases.
+/// Search for the smallest impulse over the phases of the forces.
 struct Search<'a> {
     model: &'a Model,
     omega: f64,
@@ -168,7 +168,7 @@ struct Search<'a> {
     dof: usize,
     interrupt: &'a Interrupt<'a>,
     best: Option<Best>,
-    /// Velocity of the degree of freedom by a unit impulse.
+    /// Velocity of the kicked degree of freedom after a unit impulse.
     mobility: f64,
 }
 
@@ -220,7 +220,7 @@ impl<'a> Search<'a> {
         Ok(())
     }
 
-    /// Brackets the smallest impulse of a phase where it is smaller than the best one.
+    /// Brackets the smallest impulse of a phase, unless it is larger than the best one.
     fn examine(&mut self, phase: f64, estimate: f64, hooks: &mut Hooks<'_>) -> Result<()> {
         let mut at = self.at(phase, hooks)?;
         let unit = self.best.map_or(estimate.abs(), |best| best.impulse.abs());

@@ -15,7 +15,7 @@ const FLOQUET_ON_MODES_LEAST: f64 = 1e-7;
 /// Kind: tuned; measured on: not recorded.
 const FLOQUET_ON_MODES_LARGE: f64 = 0.5;
 
-/// Whether two numbers of modes have the same verdict.
+/// Whether the multipliers on two numbers of modes agree in the verdict and in the radius.
 pub(crate) fn agree(few: &Floquet, many: &Floquet) -> bool {
     if few.grazing.is_some() || many.grazing.is_some() {
         return few.grazing.is_some() == many.grazing.is_some();
@@ -35,8 +35,8 @@ fn distances<'a>(few: &'a Floquet, many: &'a Floquet) -> impl Iterator<Item = (f
     })
 }
 
-/// Largest distance of a large ordinary multiplier on few modes from the next one on many; NaN where the motion is far
-/// from the point: two numbers of modes may agree on a motion that has little to do with it.
+/// Largest distance of a large ordinary multiplier on few modes from the nearest one on many; NaN where the motion is
+/// far from the point, since two numbers of modes may agree on a motion that has little to do with the point.
 pub(crate) fn change(few: &Floquet, many: &Floquet) -> f64 {
     if few.orbit_change.max(many.orbit_change) > FAR {
         return f64::NAN;

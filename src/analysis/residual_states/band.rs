@@ -111,7 +111,7 @@ pub fn band(
     with_ends(&held, found, (branch, point), (options, refinement), &interrupt)
 }
 
-/// How far the ends are refined: as a tolerance has chosen the harmonics of the point, so do the ends have one.
+/// How far the ends are refined; `None` where no tolerance has chosen the harmonics of the point.
 fn refinement(branch: &Branch, point: usize, solver: &SolverOptions) -> Option<Refinement> {
     let error = branch.error_estimate_at(point).unwrap_or(f64::NAN);
     // A mean, and two unknowns for each harmonic.
@@ -143,7 +143,7 @@ fn check(model: &Model, branch: &Branch, point: usize, options: &BandOptions<'_>
     Ok(())
 }
 
-/// The band of a response without freedom.
+/// The band of a response without free sliders: both ends are the response itself.
 fn without(of: BandOf, branch: &Branch, point: usize) -> Band {
     let omega = branch.omega_at(point).unwrap_or(f64::NAN);
     let amplitude = branch.stored_amplitude(point);
@@ -167,7 +167,7 @@ fn without(of: BandOf, branch: &Branch, point: usize) -> Band {
     }
 }
 
-/// (contact, direction) of the sliders.
+/// Pairs (contact, direction) of the held sliders.
 fn pairs(held: &HeldSliders<'_>) -> Result<Vec<(usize, usize)>> {
     let mut pairs = Vec::new();
     for slider in &held.sliders {
@@ -176,7 +176,7 @@ fn pairs(held: &HeldSliders<'_>) -> Result<Vec<(usize, usize)>> {
     Ok(pairs)
 }
 
-/// A band of these sliders without its ends.
+/// A band of the held sliders whose ends are still to be filled in.
 fn begun(held: &HeldSliders<'_>, (is_complete, solved): (bool, usize), gains: [f64; 2]) -> Result<Band> {
     let end = |gain: f64| BandEnd {
         value: f64::NAN,

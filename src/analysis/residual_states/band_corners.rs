@@ -26,7 +26,7 @@ const BAND_CORNERS_PER_START: usize = 8;
 /// states, 3 shows 20 and 10 one more.
 pub(crate) const BAND_CORNERS_DISTANCES: [f64; 2] = [3.0, 10.0];
 
-/// Signs of sliders, each of 1, −1, or 0 for one in the middle of its motion.
+/// Corners to try: for each slider a sign 1 or −1, or 0 for a slider in the middle of its motion.
 ///
 /// `places` are contact and direction of each slider and whether it has a limit, in the order of the signs. `of_point` are the sliders
 /// that stick at the point, with the state there, where all contacts are linear; with others and many sliders there are no corners.

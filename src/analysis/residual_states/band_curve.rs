@@ -10,24 +10,25 @@ use crate::results::Branch;
 
 const CONTEXT: &str = "the curves of a band";
 
-/// Band of one point of a curve.
+/// Band of the amplitude at one point of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandPoint {
-    /// Number of the point of the branch.
+    /// Index of the point in the branch.
     pub point: usize,
-    /// Its angular frequency.
+    /// Angular frequency of the point.
     pub omega: f64,
-    /// The amplitude of the branch.
+    /// Amplitude of the branch at the point.
     pub value: f64,
     /// The least result found.
     pub lower: f64,
     /// The largest result found.
     pub upper: f64,
-    /// Free sliders; 0: no band.
+    /// Number of free sliders; 0: no band.
     pub sliders: usize,
-    /// As [`Band::is_complete`](crate::analysis::residual_states::band::Band::is_complete).
+    /// Whether the band is complete, as
+    /// [`Band::is_complete`](crate::analysis::residual_states::band::Band::is_complete).
     pub is_complete: bool,
-    /// Solutions that were computed.
+    /// Number of solutions that were computed.
     pub solved: usize,
 }
 

@@ -51,27 +51,28 @@ const BAND_BETTER: f64 = 1e-9;
 /// Kind: rounding.
 const BAND_SAME: f64 = 1e-6;
 
-/// A band whose ends are states with held sliders.
+/// A band whose ends are states with held sliders, before they are solved on the model itself.
 pub(crate) struct Begun {
     pub band: Band,
-    /// The least and the largest result.
+    /// States with the least and the largest result.
     pub ends: [HeldState; 2],
-    /// With one free slider the states at its limits, which are the first and the last one of the band; none where one was not reached.
+    /// With one free slider, the states at its two limits, which are the first and the last state of the band; `None`
+    /// where a limit was not reached.
     pub edges: Option<[HeldState; 2]>,
     /// Whether no slider is free at the point, so that only places far from it can change the vibration.
     pub is_stuck: bool,
 }
 
-/// An end with the sliders that are free there.
+/// An end of a band, with the sliders that are free at this end.
 struct Reached<'a> {
     end: BandEnd,
-    /// Where its free sliders or its harmonics are not those of the point.
+    /// The end with its own free sliders or harmonics, where these differ from those of the point; else `None`.
     own: Option<Grown<'a>>,
     is_settled: bool,
 }
 
-/// The end that is reached from a state with the contacts free, too, that stick there; the state is `own`, or one of the sliders of
-/// the point with what its search has foretold.
+/// The end reached from a state when the contacts that stick at that state are free, too. The state is `own`, or one
+/// of the point's sliders with the gain that its search has foretold.
 fn reached<'a>(
     base: (&HeldSliders<'a>, &HeldState, f64),
     mut own: Option<Grown<'a>>,
@@ -107,13 +108,13 @@ fn reached<'a>(
     })
 }
 
-/// Whether an end was found again as a solution of the model.
+/// Whether an end was confirmed as a solution of the model.
 fn is_solution(end: &BandEnd) -> bool {
     let found = end.branch.as_ref().map(|branch| branch.stored_amplitude(0));
     found.is_some_and(|amplitude| (amplitude - end.amplitude).abs() <= BAND_SAME * end.amplitude)
 }
 
-/// Betters both ends by searches from other states of the model, in which other contacts may stick.
+/// Improves both ends by searches from other states of the model, in which other contacts may stick.
 fn from_other_states<'a>(
     held: &HeldSliders<'a>,
     (branch, point): (&Branch, usize),
@@ -200,7 +201,7 @@ fn from_other_states<'a>(
     Ok(solved + starts.solved)
 }
 
-/// A motion of the model without a free slider as an end.
+/// A motion of the model without free sliders, as an end of the band.
 fn alone(branch: Branch, places: Vec<f64>) -> BandEnd {
     let amplitude = branch.stored_amplitude(0);
     BandEnd {
@@ -215,7 +216,7 @@ fn alone(branch: Branch, places: Vec<f64>) -> BandEnd {
     }
 }
 
-/// (contact, direction) of sliders.
+/// Pairs (contact, direction) of sliders.
 fn pairs(sliders: &[StuckSlider]) -> Result<Vec<(usize, usize)>> {
     let mut pairs = Vec::new();
     for slider in sliders {
@@ -224,7 +225,7 @@ fn pairs(sliders: &[StuckSlider]) -> Result<Vec<(usize, usize)>> {
     Ok(pairs)
 }
 
-/// The ends as solutions of the model, each with the contacts free that stick there.
+/// The ends as solutions of the model, each with those contacts free that stick at the end.
 pub(crate) fn with_ends<'a>(
     held: &HeldSliders<'a>,
     mut begun: Begun,
@@ -280,7 +281,7 @@ pub(crate) fn with_ends<'a>(
     Ok(band)
 }
 
-/// Gives ends, and the limits of one free slider, more harmonics, and the ends their errors.
+/// Solves the ends, and the limits of a single free slider, with more harmonics; sets the errors of the ends.
 fn refine<'a>(
     (held, begun): (&HeldSliders<'a>, &mut Begun),
     ends: &mut [Reached<'a>; 2],
@@ -336,7 +337,7 @@ fn refine<'a>(
     Ok(solved)
 }
 
-/// A state of one free slider as a result.
+/// A state of one free slider in the form of the result.
 pub(crate) fn state_of(state: &HeldState) -> BandState {
     BandState {
         place: state.places[0],
@@ -346,7 +347,7 @@ pub(crate) fn state_of(state: &HeldState) -> BandState {
     }
 }
 
-/// The end of a band as a solution of the model.
+/// An end of the band, solved on the model itself.
 fn attained(held: &HeldSliders<'_>, state: &HeldState, gain: f64, interrupt: &Interrupt<'_>) -> Result<BandEnd> {
     let mut at_limit: Vec<usize> = Vec::new();
     for margin in &state.margins {
@@ -378,7 +379,7 @@ fn attained(held: &HeldSliders<'_>, state: &HeldState, gain: f64, interrupt: &In
     })
 }
 
-/// The harmonics of all degrees of freedom of a state.
+/// The harmonics of all degrees of freedom in a state.
 fn harmonics(
     held: &HeldSliders<'_>,
     state: &HeldState,

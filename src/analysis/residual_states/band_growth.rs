@@ -12,19 +12,19 @@ use std::rc::Rc;
 
 const CONTEXT: &str = "contacts that stick at an end of a band";
 
-/// An end with more free sliders than the state of the branch has.
+/// An end with more free sliders than the branch has at its point.
 pub(crate) struct Grown<'a> {
     pub held: Rc<HeldSliders<'a>>,
     pub state: HeldState,
     /// Relative gain that the linear model still foretells, as in [`Found::gain`](crate::analysis::residual_states::band_search::Found::gain).
     pub gain: f64,
-    /// Solutions that were computed.
+    /// Number of solutions that were computed.
     pub solved: usize,
 }
 
-/// The end that a search reaches from another one, given as a state with the branch of its solution, where the sliders that stick there
-/// are free, too; `None` where no more do.
-/// `contacts` are those whose force is free, none: all that are.
+/// The end that a search reaches from another end, given as a state and the branch of its solution, when the sliders
+/// that stick at that end are free, too; `None` where no further ones stick. `contacts` are those whose force is
+/// free; empty: all possible ones.
 ///
 /// # Errors
 /// As [`free_sliders`] and [`HeldSliders::first`].

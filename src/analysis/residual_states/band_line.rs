@@ -34,16 +34,17 @@ const FLAT: f64 = 1e-9;
 /// Kind: cap.
 const BAND_LINE_HALVINGS: usize = 5;
 
-/// States in the order of the place of the slider.
+/// States in the order of the place of one free slider, from limit to limit.
 pub(crate) struct Line {
     pub states: Vec<HeldState>,
     /// Whether both limits were reached.
     pub is_complete: bool,
-    /// Solutions that were computed.
+    /// Number of solutions that were computed.
     pub solved: usize,
 }
 
-/// The distance to the limit along the slider, by the margins at a state; infinite where none foretells one.
+/// Distance of the slider's place from its limit, in the direction `sign`, by the margins at a state; infinite where
+/// none approaches zero.
 fn distance(state: &HeldState, sign: f64) -> f64 {
     let to_limit = state.margins.iter().map(|m| {
         let rate = sign * m.gradient[0];
@@ -56,13 +57,13 @@ fn distance(state: &HeldState, sign: f64) -> f64 {
     to_limit.fold(f64::INFINITY, f64::min)
 }
 
-/// The place at which the least margin vanishes, by its slope.
+/// The place of the slider at which the least margin vanishes, by its slope; `None` without a slope.
 fn limit_place(state: &HeldState) -> Option<f64> {
     let least = state.margins.iter().min_by(|a, b| a.share().total_cmp(&b.share()))?;
     Some(state.places[0] - least.value / least.gradient[0])
 }
 
-/// The states from the one limit to the other through a first one within them.
+/// The states from one limit of the slider to the other, through a first state between them.
 ///
 /// # Errors
 /// Those of [`HeldSliders::solve`] other than a missing solution.
@@ -105,7 +106,7 @@ impl Walk<'_, '_> {
         self.held.find(&[place], from)
     }
 
-    /// A state that rounding has left beyond a limit, at that limit.
+    /// The state at a limit, for a state that rounding has left beyond it.
     fn within(&mut self, mut state: HeldState) -> Result<HeldState> {
         for _ in 0..MOST_SECANTS {
             if state.least_margin() >= -0.5 * BAND_LINE_AT_LIMIT {
@@ -120,7 +121,7 @@ impl Walk<'_, '_> {
         Ok(state)
     }
 
-    /// The states behind the first one up to the limit in one direction, and whether that was reached.
+    /// The states after the first one up to the limit in one direction; and whether that limit was reached.
     fn up_to_limit(&mut self, first: &HeldState, sign: f64) -> Result<(Vec<HeldState>, bool)> {
         let mut states: Vec<HeldState> = Vec::new();
         let mut step = self.width / BAND_LINE_STEPS;
@@ -155,7 +156,8 @@ impl Walk<'_, '_> {
         Ok((states, false))
     }
 
-    /// The state at the limit between one within it and one beyond: Newton's method on the least margin, within the bracket.
+    /// The state at the limit, between a state within it and one beyond: Newton's method on the least margin, kept
+    /// within the bracket.
     fn limit_between(&mut self, within: &HeldState, beyond: HeldState) -> Result<Option<HeldState>> {
         let (mut low, mut high) = (within.clone(), beyond);
         let mut guess = high.clone();
@@ -187,7 +189,7 @@ impl Walk<'_, '_> {
         Ok(Some(low))
     }
 
-    /// The states with the extrema of the result between them.
+    /// The states, with the extrema of the result inserted between them.
     fn with_extrema(&mut self, states: Vec<HeldState>) -> Result<Vec<HeldState>> {
         let mut all: Vec<HeldState> = Vec::new();
         for state in states {
@@ -235,7 +237,7 @@ impl Walk<'_, '_> {
         self.between(&half, b, halvings - 1, all)
     }
 
-    /// The state between two at which the slope is zero, by the Illinois method.
+    /// The state between two others at which the slope of the result is zero, by the Illinois method.
     fn extremum(&mut self, a: &HeldState, b: &HeldState) -> Result<Option<HeldState>> {
         let (mut low, mut high) = ((a.places[0], a.gradient[0]), (b.places[0], b.gradient[0]));
         let mut found: Option<HeldState> = None;

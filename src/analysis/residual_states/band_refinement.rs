@@ -24,24 +24,24 @@ const BAND_REFINEMENT_FIRST: f64 = 3e-3;
 /// Kind: cap.
 pub(crate) const BAND_REFINEMENT_MOST_UNKNOWNS: usize = 1500;
 
-/// How far the ends of a band are refined.
+/// Limits of the refinement of a band's ends.
 #[derive(Clone, Copy)]
 pub(crate) struct Refinement {
-    /// Largest change of the result, relative to it, that is small enough.
+    /// Relative change of the result that is small enough to stop.
     pub tolerance: f64,
-    /// The highest harmonic.
+    /// Highest harmonic that may be carried.
     pub highest: usize,
 }
 
-/// An end with more harmonics.
+/// An end of a band, with more harmonics.
 pub(crate) struct Finer<'a> {
     pub own: Grown<'a>,
     /// Relative change of the result by the last doubling.
     pub error: f64,
 }
 
-/// The end again with more harmonics, from a state near it: the least result (`sign` −1) or the largest one (1) nearby. `None` where
-/// none is allowed, or no solution was found.
+/// Searches for an end again with more harmonics, from a state near it: the least result (`sign` −1) or the largest
+/// one (1) nearby. `None` where more harmonics are not allowed, or no solution was found.
 ///
 /// # Errors
 /// As [`HeldSliders::first`], those of a missing solution aside.
@@ -66,7 +66,7 @@ pub(crate) fn refined<'a>(
     }
 }
 
-/// The end with twice the harmonics, and the relative change of its result.
+/// The end with twice the harmonics; and the relative change of its result.
 fn doubled<'a>(
     held: &HeldSliders<'a>,
     state: &HeldState,

@@ -37,19 +37,19 @@ const WITHIN: f64 = 1e-10;
 /// Kind: cap.
 const BAND_SEARCH_ROUNDS: usize = 400;
 
-/// An end that was found.
+/// An end of the band that a search found.
 pub(crate) struct Found {
     pub state: HeldState,
     /// Relative gain that the linear model still foretells for a step of a tenth of the sliders' distances.
     pub gain: f64,
 }
 
-/// The search of both ends.
+/// Search for both ends of a band with several free sliders.
 pub(crate) struct Search<'h, 'a> {
     pub held: &'h HeldSliders<'a>,
-    /// Distances of the sliders.
+    /// Units of the places: distances over which the sliders can be dragged.
     pub units: Vec<f64>,
-    /// Solutions that were computed.
+    /// Number of solutions that were computed.
     pub solved: usize,
 }
 
@@ -59,8 +59,8 @@ impl Search<'_, '_> {
         self.held.find(places, from)
     }
 
-    /// The step from a state that the linear model finds best: the objective's gradient times `sign`, or with `sign` = 0 the
-    /// shortest step that is within the limits. In units of the sliders.
+    /// The best step from a state by the linear model: along the objective's gradient times `sign` or, with `sign` =
+    /// 0, the shortest step to within the limits. In units of the sliders' distances.
     fn step(&self, state: &HeldState, sign: f64, radius: f64) -> Result<Vec<f64>> {
         let n = self.units.len();
         let mut step = try_vec(n, 0.0, CONTEXT)?;
@@ -92,7 +92,7 @@ impl Search<'_, '_> {
         Ok(places)
     }
 
-    /// Goes within the limits; `None` where that fails.
+    /// Moves a state to within the limits; `None` where that fails.
     pub fn within(&mut self, mut state: HeldState) -> Result<Option<HeldState>> {
         for _ in 0..12 {
             if state.least_margin() >= -WITHIN {
@@ -107,7 +107,8 @@ impl Search<'_, '_> {
         Ok((state.least_margin() >= -1e3 * WITHIN).then_some(state))
     }
 
-    /// Another start: from a state along a direction, in units of the sliders, as far as the limits allow, in a few steps.
+    /// Another start: moves from a state along a direction, in units of the sliders' distances, as far as the limits
+    /// allow, in a few steps.
     pub fn far(&mut self, from: &HeldState, direction: &[f64]) -> Result<Option<HeldState>> {
         let mut state = from.clone();
         for _ in 0..4 {
@@ -126,7 +127,8 @@ impl Search<'_, '_> {
         self.climb_from(start, sign, BAND_SEARCH_FIRST)
     }
 
-    /// The same with a radius of the first step, in units of the sliders' distances.
+    /// The largest (`sign` 1) or smallest (−1) result from a start within the limits; `first` is the radius of the
+    /// first step, in units of the sliders' distances.
     pub fn climb_from(&mut self, start: HeldState, sign: f64, first: f64) -> Result<Found> {
         let mut state = start;
         let mut radius = first;
@@ -175,7 +177,8 @@ impl Search<'_, '_> {
     }
 }
 
-/// Projects a step onto the half-spaces of the linearised margins and the box of a radius: Dykstra's method (Boyle & Dykstra 1986).
+/// Projects a step onto the half-spaces of the linearised margins and a box of the given radius, by Dykstra's method
+/// (Boyle & Dykstra 1986).
 fn project(step: &mut [f64], state: &HeldState, units: &[f64], radius: f64) -> Result<()> {
     struct Half {
         normal: Vec<f64>,

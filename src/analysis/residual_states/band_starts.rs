@@ -28,7 +28,8 @@ const BAND_STARTS_WITHIN: f64 = 0.9;
 /// Kind: rounding.
 const BAND_STARTS_AT_LIMIT: f64 = 1e-6;
 
-/// A slider that may be placed: its contact and direction, the middle of its motion, and the reach of its limit.
+/// A slider that may be placed: its contact and direction, the middle of its motion, and the reach of its friction
+/// limit.
 #[derive(Clone, Copy)]
 struct SliderReach {
     contact: usize,
@@ -37,7 +38,7 @@ struct SliderReach {
     reach: f64,
 }
 
-/// States of a model at the frequency of a point.
+/// Other states of a model at the frequency of a point, as starts of searches.
 pub(crate) struct Starts<'a> {
     model: &'a Model,
     solver: SolverOptions,
@@ -46,12 +47,13 @@ pub(crate) struct Starts<'a> {
     guess: Vec<Complex64>,
     sliders: Vec<SliderReach>,
     interrupt: &'a Interrupt<'a>,
-    /// Solutions that were computed.
+    /// Number of solutions that were computed.
     pub solved: usize,
 }
 
 impl<'a> Starts<'a> {
-    /// Those at a stored point, whose solver has exactly its harmonics, by the sliders of `contacts`; none: of all contacts.
+    /// Prepares states at a stored point, with a solver of exactly the same harmonics, by the sliders of `contacts`;
+    /// empty: of all contacts.
     ///
     /// # Errors
     /// Those of the results of the branch.
@@ -104,8 +106,9 @@ impl<'a> Starts<'a> {
         self.sliders.len()
     }
 
-    /// A state with the sliders that are free in it; `None` where no solution was found. Number 0 has the sliders in the middles of
-    /// their motions, where contacts stick most easily, the others lie without pattern, each second one opposite to the one before.
+    /// The state number `number`, with the sliders that are free in it; `None` where no solution was found. Number 0
+    /// has the sliders in the middles of their motions, where contacts stick most easily. In the others they lie
+    /// without pattern, each second state opposite to the one before.
     ///
     /// # Errors
     /// Those of the model; `OutOfMemory`; `StoppedByCaller`.
@@ -125,8 +128,9 @@ impl<'a> Starts<'a> {
         self.solution(&places)
     }
 
-    /// The state beyond an end at which some contacts are at their limits: the other sliders go on by a share of their distances in
-    /// the sense in which the result grows (`sign` 1) or falls (−1), and those contacts slip.
+    /// The state beyond an end at which some contacts are at their limits. The other sliders move on by a share of
+    /// their distances in the sense in which the result grows (`sign` 1) or falls (−1), and the contacts at their
+    /// limits slip.
     ///
     /// # Errors
     /// As [`Self::state`].
@@ -158,7 +162,7 @@ impl<'a> Starts<'a> {
         }
     }
 
-    /// The corners of the sliders, see [`corners`].
+    /// Corners at which to place the sliders, see [`corners`].
     pub fn corners(&self, of_point: Option<(&HeldState, &[StuckSlider])>, starts: usize) -> Result<Vec<Vec<f64>>> {
         let mut places = Vec::new();
         for slider in &self.sliders {
@@ -171,7 +175,7 @@ impl<'a> Starts<'a> {
         corners(&places, of_point, starts)
     }
 
-    /// The state with sliders at a corner, and those that are free in it.
+    /// The state with the sliders at a corner, and the sliders that are free in it.
     ///
     /// # Errors
     /// As [`Self::state`].
@@ -191,7 +195,7 @@ impl<'a> Starts<'a> {
         found.map(|(slider, sign)| slider.middle + distance * sign * slider.reach)
     }
 
-    /// The solution of the model with sliders at places, and those that are free in it.
+    /// The solution of the model with sliders at the given places; and the sliders that are free in it.
     fn solution(&mut self, places: &[(usize, usize, f64)]) -> Result<Option<(Branch, Vec<StuckSlider>)>> {
         self.interrupt.check()?;
         let mut model = self.model.try_clone()?;
@@ -222,7 +226,8 @@ impl<'a> Starts<'a> {
     }
 }
 
-/// The equations with the sliders that are free in a state, and the state within their limits; `None` where none was found there.
+/// The equations for the sliders that are free in a state; and the state moved to within their limits; `None` where
+/// none was found.
 ///
 /// # Errors
 /// As [`HeldSliders::first`], those of a missing solution aside.
@@ -259,7 +264,7 @@ pub(crate) fn within_limits<'a>(
     Ok(within.map(|first| (Rc::new(held), first)))
 }
 
-/// The end that a search reaches from a state within the limits, the least result (`sign` −1) or the largest one (1).
+/// The end that a search reaches from a state within the limits: the least result (`sign` −1) or the largest one (1).
 ///
 /// # Errors
 /// As [`HeldSliders::find`].

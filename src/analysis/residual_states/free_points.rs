@@ -12,6 +12,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::model::Model;
 use crate::model::matrices::speed::Speed;
+use crate::options::Range;
 use crate::options::{Exchanged, SolverOptions};
 use crate::results::Branch;
 use crate::sensitivity::{ForcedPoint, Parameter, TotalDerivative};
@@ -22,18 +23,18 @@ const CONTEXT: &str = "the freedom of a solution";
 /// Kind: rounding.
 const FREEDOM_ROUNDING: f64 = 1e-11;
 
-/// The points of a branch of forced responses of a model.
+/// Points of a forced response whose free sliders are requested.
 pub(crate) struct FreePoints<'a> {
     model: &'a Model,
     branch: &'a Branch,
     solver: SolverOptions,
-    /// First and last angular frequency of all points; `None`: that of each point.
-    sweep: Option<(f64, f64)>,
+    /// First and last angular frequency of all points; `None`: each point has its own.
+    sweep: Option<Range>,
     interrupt: &'a Interrupt<'a>,
     held: Option<HeldContacts>,
 }
 
-/// A model whose contacts are held that stick at the points of one resolution.
+/// A model in which the contacts are held that stick at the points, condensed for one resolution.
 struct HeldContacts {
     resolution: usize,
     contacts: Vec<usize>,
@@ -42,7 +43,7 @@ struct HeldContacts {
 }
 
 impl<'a> FreePoints<'a> {
-    /// Points each by itself.
+    /// Prepares for points that have nothing in common.
     pub fn single(model: &'a Model, branch: &'a Branch, interrupt: &'a Interrupt<'a>) -> Self {
         Self {
             model,
@@ -54,11 +55,11 @@ impl<'a> FreePoints<'a> {
         }
     }
 
-    /// The points of a sweep with the options of its solver.
+    /// Prepares for points of one sweep, with the options of its solver.
     pub fn along(
         model: &'a Model,
         branch: &'a Branch,
-        (solver, sweep): (&SolverOptions, (f64, f64)),
+        (solver, sweep): (&SolverOptions, Range),
         interrupt: &'a Interrupt<'a>,
     ) -> Self {
         Self {
@@ -68,8 +69,8 @@ impl<'a> FreePoints<'a> {
         }
     }
 
-    /// The free sliders of a stored point, each with the derivative of the amplitude by its place at a fixed frequency; none for an
-    /// unknown point.
+    /// The free sliders of a stored point, each with the derivative of the amplitude by its place at a fixed
+    /// frequency; empty where the solution of the point is unknown.
     ///
     /// # Errors
     /// Those of the model and of callbacks; `OutOfMemory`; `StoppedByCaller`.
@@ -123,9 +124,10 @@ impl<'a> FreePoints<'a> {
         Ok(free)
     }
 
-    /// The sliders of a stored point that stick through the period, for a point of which none is free: another place, far from that of the
-    /// point, may make a contact slip, open or close. None where all contacts have sliders under constant loads: then the velocities of
-    /// all motions are the same, because the difference of two of them cannot grow.
+    /// The sliders of a stored point that stick through the period, for a point where none is free: another place,
+    /// far from that of the point, may make a contact slip, open or close. Empty where all contacts have sliders
+    /// under constant loads: then the velocities of all motions are equal, since the difference of two motions cannot
+    /// grow.
     ///
     /// # Errors
     /// As [`Self::at`].
@@ -147,7 +149,7 @@ impl<'a> FreePoints<'a> {
         Ok(stuck.sliders)
     }
 
-    /// Whether the shares of slip leave room for freedom: some contact sticks, and some other one slips, or may open.
+    /// Whether the slip fractions allow free sliders: some contact sticks, and some other one slips or may open.
     fn may_be_free(&self, point: usize) -> bool {
         let Some(shares) = self.branch.slip_fraction_at(point) else {
             return false;
@@ -159,7 +161,7 @@ impl<'a> FreePoints<'a> {
         laws.iter().any(|law| sticks(law.contact)) && !laws.iter().all(|law| for_sure(law.contact))
     }
 
-    /// Holds the contacts of sliders at their places.
+    /// Makes a model in which the contacts of these sliders are held at their places.
     fn hold(&mut self, at_frequency: &Model, sliders: &[StuckSlider], point: usize) -> Result<()> {
         // Loads that follow the frequency are those of one point.
         let is_tied = matches!(self.model.speed(), Speed::PerOmega(_));
@@ -185,7 +187,7 @@ impl<'a> FreePoints<'a> {
 
     fn prepared(
         &self,
-        (model, sweep): (&Model, Option<(f64, f64)>),
+        (model, sweep): (&Model, Option<Range>),
         sliders: &[StuckSlider],
         (point, resolution): (usize, usize),
     ) -> Result<HeldContacts> {
@@ -213,7 +215,7 @@ impl<'a> FreePoints<'a> {
             ..self.solver.fixed()
         };
         let omega = branch.omega_at(point).unwrap_or(f64::NAN);
-        let sweep = sweep.unwrap_or((omega, omega));
+        let sweep = sweep.unwrap_or(omega.into());
         let reference = Some(condensed.reference());
         let condensed = Condensed::with_reference(&held, &options, sweep, reference, self.interrupt)?;
         Ok(HeldContacts {

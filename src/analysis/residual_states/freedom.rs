@@ -13,10 +13,10 @@ use crate::results::Branch;
 
 const CONTEXT: &str = "the freedom of a solution";
 
-/// A slider whose place is free.
+/// A slider whose place is free at a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeSlider {
-    /// Number of the contact.
+    /// Index of the contact in the model.
     pub contact: usize,
     /// Direction of the slider, t1 (0) or t2 (1).
     pub direction: usize,
@@ -26,8 +26,9 @@ pub struct FreeSlider {
     pub derivative: f64,
 }
 
-/// The sliders of a stored point of a forced response that stick through the period and change its vibration; none where no contact
-/// sticks all the time, or none of the others slips or opens. `model` is the one that the branch was computed with.
+/// The free sliders of a stored point of a forced response: they stick through the period, and their places change
+/// its vibration. Empty where no contact sticks all the time, or none of the others slips or opens. `model` is the
+/// one with which the branch was computed.
 ///
 /// # Errors
 /// `Index` for an unknown point, `Argument` for another model than that of the branch, `Unsupported` for a nonlinear mode; those of
@@ -36,7 +37,7 @@ pub fn freedom(model: &Model, branch: &Branch, point: usize) -> Result<Vec<FreeS
     freedom_with(model, branch, point, &Interrupt::none())
 }
 
-/// The same as [`freedom`], and the caller may stop it.
+/// The free sliders of a stored point as [`freedom`], and the caller may stop it.
 ///
 /// # Errors
 /// As [`freedom`]; `StoppedByCaller`.
@@ -60,7 +61,7 @@ pub fn freedom_with(
     Ok(free)
 }
 
-/// The same with what the solution knows of the sliders.
+/// The free sliders with their data in the solver, and the derivatives of the amplitude by their places.
 pub(crate) fn free_sliders(
     model: &Model,
     branch: &Branch,

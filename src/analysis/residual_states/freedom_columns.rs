@@ -5,11 +5,12 @@ use crate::error::{Result, Status, boxed};
 use crate::hooks::Hooks;
 use crate::interrupt::Phase;
 use crate::model::Model;
+use crate::options::Range;
 use crate::options::{ForcedOptions, SolverOptions};
 use crate::results::{Branch, FreedomOfPoints};
 
-/// Computes the free sliders of all stored points of a branch and of its children, those of another period aside, whose freedom is
-/// unknown. A caller who stops it has a branch that ended early, with the freedom of the points before.
+/// Computes the free sliders of all stored points of a branch and of its children (except those with another period),
+/// where they are unknown. If the caller stops it, the branch ends early, with the free sliders of the points before.
 ///
 /// # Errors
 /// Those of the model; `OutOfMemory`.
@@ -26,7 +27,7 @@ pub(crate) fn record_freedom(
     let mut stopped = false;
     if branch.periods() == 1 {
         let interrupt = hooks.interrupt();
-        let sweep = (options.1.omega_start, options.1.omega_stop);
+        let sweep = Range::new(options.1.omega_start, options.1.omega_stop);
         let mut points = FreePoints::along(model, branch, (options.0, sweep), &interrupt);
         for point in 0..stored {
             let free = match interrupt.part(Phase::Results, point, stored) {

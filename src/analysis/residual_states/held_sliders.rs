@@ -43,23 +43,23 @@ const HELD_SLIDERS_ENOUGH: f64 = 1e-10;
 const HELD_SLIDERS_SETTLED: f64 = 1e-13;
 const HELD_SLIDERS_NEARLY: f64 = 1e-9;
 
-/// Result of a forced response that is bounded.
+/// Result of a forced response that a band bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BandOf {
     /// The amplitude at the frequency of the point.
     Amplitude,
-    /// The amplitude of the peak, which moves with the places.
+    /// The amplitude of the peak, which moves with the places of the sliders.
     PeakAmplitude,
     /// The angular frequency of the peak.
     PeakOmega,
 }
 
-/// The equations with held sliders.
+/// The equations of a forced response with held sliders.
 pub(crate) struct HeldSliders<'a> {
     pub model: &'a Model,
-    /// The same with large friction coefficients at the free contacts.
+    /// The model with large friction coefficients at the free contacts, which therefore stick.
     pub held: Model,
-    /// With exactly the harmonics that are carried.
+    /// Options with exactly the carried harmonics.
     pub solver: SolverOptions,
     pub response_dof: usize,
     pub response: Option<Response<'a>>,
@@ -68,10 +68,10 @@ pub(crate) struct HeldSliders<'a> {
     pub interrupt: &'a Interrupt<'a>,
 }
 
-/// A solution that several hold.
+/// A solution with held sliders, shared by several owners.
 pub(crate) type HeldState = Arc<HeldSolution>;
 
-/// A solution.
+/// A solution with held sliders.
 pub(crate) struct HeldSolution {
     /// Places of the sliders.
     pub places: Vec<f64>,
@@ -79,26 +79,26 @@ pub(crate) struct HeldSolution {
     pub set: HarmonicSet,
     /// Packed motions in the caller's unit.
     pub motion: Vec<f64>,
-    /// The result that is bounded.
+    /// The result that the band bounds.
     pub value: f64,
-    /// Its derivatives by the places.
+    /// Derivatives of the result by the places of the sliders.
     pub gradient: Vec<f64>,
     pub amplitude: f64,
-    /// Derivatives of motions and frequency by the places.
+    /// Derivatives of the packed motions and the frequency by the places, one vector for each slider.
     by_place: Vec<Vec<f64>>,
     omega_by_place: Vec<f64>,
     pub margins: Vec<Margin>,
 }
 
 impl HeldSolution {
-    /// The least margin over the mean limit of its contact.
+    /// The least margin, over the mean limit of its contact.
     pub fn least_margin(&self) -> f64 {
         self.margins.iter().map(Margin::share).fold(f64::INFINITY, f64::min)
     }
 }
 
 impl<'a> HeldSliders<'a> {
-    /// The equations for the sliders of `model`.
+    /// The equations for the given sliders of `model`.
     ///
     /// # Errors
     /// Those of [`Model::set_slider`]; `OutOfMemory`.
@@ -134,7 +134,7 @@ impl<'a> HeldSliders<'a> {
         })
     }
 
-    /// A copy of a model with its sliders at places.
+    /// A copy of a model with the sliders at the given places.
     pub fn placed(&self, model: &Model, places: &[f64]) -> Result<Model> {
         let mut copy = model.try_clone()?;
         for (slider, &place) in self.sliders.iter().zip(places) {
@@ -143,7 +143,7 @@ impl<'a> HeldSliders<'a> {
         Ok(copy)
     }
 
-    /// The distances over which sliders can be dragged: μN/kt.
+    /// Distance over which each slider can be dragged: μN/kt.
     pub fn distances(&self, state: &HeldState) -> Result<Vec<f64>> {
         let mut units = try_vec(self.sliders.len(), 0.0, CONTEXT)?;
         for (unit, slider) in units.iter_mut().zip(&self.sliders) {
@@ -154,7 +154,7 @@ impl<'a> HeldSliders<'a> {
         Ok(units)
     }
 
-    /// The solution at the present places, from a packed motion over `set` in the caller's unit.
+    /// The solution with the sliders where they are, from a packed motion over `set` in the caller's unit.
     ///
     /// # Errors
     /// As [`Self::solve`].
@@ -178,7 +178,7 @@ impl<'a> HeldSliders<'a> {
         }
     }
 
-    /// The solution at other places, from one nearby.
+    /// The solution with the sliders at other places, from a solution nearby.
     ///
     /// # Errors
     /// `NoConvergence` where it is not found; those of the model and of callbacks; `OutOfMemory`; `StoppedByCaller`.
@@ -299,7 +299,7 @@ fn adjoint_at(point: &mut ForcedPoint<'_>, u: &[f64], omega: f64) -> Result<Adjo
     }
 }
 
-/// Newton's method at a fixed frequency; the adjoint of the solution.
+/// Newton's method at a fixed frequency; returns the adjoint of the solution.
 fn newton(point: &mut ForcedPoint<'_>, u: &mut [f64], omega: f64) -> Result<Adjoint> {
     let mut last = f64::INFINITY;
     for _ in 0..HELD_SLIDERS_ITERATIONS {
@@ -319,7 +319,7 @@ fn newton(point: &mut ForcedPoint<'_>, u: &mut [f64], omega: f64) -> Result<Adjo
     fail!(NoConvergence, "no solution was found where a slider is held")
 }
 
-/// Corrects the frequency to that of the peak; the adjoint there.
+/// Corrects the frequency to that of the peak; returns the adjoint at the peak.
 fn to_peak(point: &mut ForcedPoint<'_>, u: &mut [f64], omega: &mut f64, first: Adjoint) -> Result<Adjoint> {
     let mut adjoint = first;
     let mut settled = f64::INFINITY;

@@ -47,40 +47,40 @@ const NEXT: f64 = 1e-3;
 /// Kind: rounding.
 const DRAGGED: f64 = 1e-9;
 
-/// Result of a nonlinear mode that is bounded.
+/// Result of a nonlinear mode that a band bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ModeBandOf {
     /// The damping ratio at the amplitude of the point.
     Damping,
-    /// The angular frequency there.
+    /// The angular frequency at the amplitude of the point.
     Omega,
 }
 
-/// A state of a mode at its amplitude.
+/// A state of a nonlinear mode at the amplitude of the point.
 #[derive(Clone, Debug)]
 pub struct ModeBandState {
     /// Places of the sliders, in the order of [`ModeBand::sliders`].
     pub places: Vec<f64>,
-    /// Angular frequency.
+    /// Angular frequency of the mode in this state.
     pub omega: f64,
-    /// Damping ratio.
+    /// Damping ratio of the mode in this state.
     pub damping_ratio: f64,
 }
 
-/// A band of a nonlinear mode.
+/// Band of a nonlinear mode over the places of its sticking sliders.
 #[derive(Debug)]
 pub struct ModeBand {
-    /// Sliders that stick through the period as (contact, direction); none: no band.
+    /// Sliders that stick through the period, as (contact, direction); empty: the mode has no band.
     pub sliders: Vec<(usize, usize)>,
     /// State with the least result found.
     pub lower: ModeBandState,
-    /// State with the largest one.
+    /// State with the largest result found.
     pub upper: ModeBandState,
-    /// With one slider the states that were computed, by rising place.
+    /// With one slider, the states that were computed, by rising place; else empty.
     pub states: Vec<ModeBandState>,
     /// Whether every solution was found, and both ends of each interval were dragged by the limit.
     pub is_complete: bool,
-    /// Solutions that were computed.
+    /// Number of solutions that were computed.
     pub solved: usize,
 }
 
@@ -194,7 +194,7 @@ pub fn mode_band(
     Ok(band)
 }
 
-/// The sliders of a point of a mode that stick, where others vibrate.
+/// The sticking sliders at a point of a mode; empty where nothing else vibrates nonlinearly.
 fn sliders_of(
     model: &Model,
     branch: &Branch,
@@ -243,7 +243,7 @@ struct Search<'a> {
     solver: SolverOptions,
     range: ModeOptions<'a>,
     sliders: &'a [StuckSlider],
-    /// Largest limit of friction of each over its stiffness.
+    /// Reach of each slider: its largest friction limit over its stiffness.
     reach: Vec<f64>,
     of: ModeBandOf,
     interrupt: &'a Interrupt<'a>,
@@ -259,7 +259,7 @@ impl Search<'_> {
         }
     }
 
-    /// The mode with sliders at places; `None` where none was found.
+    /// The mode with its sliders at the given places; `None` where it was not found.
     fn solve(&mut self, places: &[f64], k: usize) -> Result<Option<Solved>> {
         self.interrupt.check()?;
         let mut model = self.model.separate_clone()?;

@@ -23,26 +23,26 @@ const SLIP_MARGINS_TIMES_PER_WAVE: usize = 16;
 /// Kind: cap.
 const SECTIONS: usize = 60;
 
-/// A condition margin ≥ 0.
+/// A condition margin ≥ 0 that a sticking contact must meet.
 #[derive(Clone, Debug)]
 pub(crate) struct Margin {
-    /// Number of the contact.
+    /// Index of the contact in the model.
     pub contact: usize,
     /// The margin, in the caller's unit of forces.
     pub value: f64,
-    /// Its derivatives by the places of the sliders.
+    /// Derivatives of the margin by the places of the sliders.
     pub gradient: Vec<f64>,
-    /// Mean of the limit μN.
+    /// Mean of the friction limit μN over the period.
     pub limit: f64,
 }
 
 impl Margin {
-    /// The size of the limit, which may vanish.
+    /// Size of the friction limit, kept above zero where the limit vanishes.
     pub fn size(&self) -> f64 {
         self.limit.abs().max(f64::MIN_POSITIVE)
     }
 
-    /// The margin over its limit.
+    /// The margin divided by the size of its friction limit.
     pub fn share(&self) -> f64 {
         self.value / self.size()
     }
@@ -56,18 +56,18 @@ pub(crate) struct Held<'a> {
     pub condensed: &'a Condensed,
     /// Packed motion in the solver's units.
     pub motion: &'a [f64],
-    /// The sliders, those of a contact side by side, at their places.
+    /// The sliders at their places; those of one contact follow each other.
     pub sliders: &'a [StuckSlider],
     /// Derivatives of the motions by the places.
     pub by_place: &'a [Vec<f64>],
 }
 
-/// Tangential force and limit of a contact.
+/// Tangential force and friction limit of a contact over the period.
 struct Signals<'a> {
     set: &'a HarmonicSet,
     /// Packed forces along the directions.
     force: [Vec<f64>; 2],
-    /// Packed limit.
+    /// Packed friction limit μN.
     limit: Vec<f64>,
 }
 
@@ -79,7 +79,7 @@ impl Signals<'_> {
 }
 
 impl Held<'_> {
-    /// The conditions of all contacts.
+    /// The margins of all contacts with held sliders.
     pub fn margins(&self, interrupt: &Interrupt<'_>) -> Result<Vec<Margin>> {
         let mut margins = Vec::new();
         for of_contact in self.sliders.chunk_by(|a, b| a.contact == b.contact) {
@@ -94,7 +94,7 @@ impl Held<'_> {
         &self.motion[coordinate * m..(coordinate + 1) * m]
     }
 
-    /// μ, kn and n₀ of a contact, kn = 0 under a constant load.
+    /// Friction coefficient μ, normal stiffness kn and normal load n₀ of a contact; kn = 0 under a constant load.
     fn load(&self, slider: &StuckSlider) -> [f64; 3] {
         let contact = &self.model.contacts()[slider.contact];
         let [mu, kn, preload] =
@@ -158,7 +158,7 @@ impl Held<'_> {
     }
 }
 
-/// Times, directions of the force, and values of the minima of μN − f and of μN + f.
+/// For a slider on a line, the minima of μN − f and of μN + f: time, direction of the force, and value.
 fn in_line(signals: &Signals<'_>, interrupt: &Interrupt<'_>) -> Result<Vec<(f64, [f64; 2], f64)>> {
     let set = signals.set;
     let mut found = Vec::new();
@@ -180,7 +180,7 @@ fn in_line(signals: &Signals<'_>, interrupt: &Interrupt<'_>) -> Result<Vec<(f64,
     Ok(found)
 }
 
-/// The same of μN − |f| in a plane.
+/// For sliders in a plane, the minima of μN − |f|: time, direction of the force, and value.
 fn in_plane(signals: &Signals<'_>, interrupt: &Interrupt<'_>) -> Result<Vec<(f64, [f64; 2], f64)>> {
     let set = signals.set;
     let times = SLIP_MARGINS_TIMES_PER_WAVE * (set.highest_reduced() + 1);

@@ -14,7 +14,7 @@ const CONTEXT: &str = "the contacts that stick";
 /// A slider that sticks through the period, along one direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StuckSlider {
-    /// Number of the contact in the model.
+    /// Index of the contact in the model.
     pub contact: usize,
     /// Direction of the slider, t1 (0) or t2 (1).
     pub direction: usize,
@@ -22,7 +22,7 @@ pub(crate) struct StuckSlider {
     pub coordinate: usize,
     /// Relative coordinate along the normal, where the load varies.
     pub normal: Option<usize>,
-    /// Stiffness of its spring.
+    /// Stiffness of the slider's spring.
     pub stiffness: f64,
     /// Place of the slider, in the caller's unit.
     pub place: f64,
@@ -31,11 +31,12 @@ pub(crate) struct StuckSlider {
 /// The sliders that stick through the period at a solution.
 pub(crate) struct Stuck {
     pub sliders: Vec<StuckSlider>,
-    /// Whether some other law is not linear near the solution: without one a constant force changes no vibration.
+    /// Whether some other law is nonlinear near the solution. Without one, a constant force does not change the
+    /// vibration.
     pub others_vibrate: bool,
 }
 
-/// Whether a contact keeps a force where it sticks.
+/// Whether a contact may keep a residual force while it sticks.
 pub(crate) fn keeps_force(contact: &Contact) -> bool {
     let has_friction = [Constant::Kt, Constant::Mu]
         .iter()

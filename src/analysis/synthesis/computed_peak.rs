@@ -12,6 +12,7 @@ use crate::error::{Result, Status, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::linalg::sparse_storage::sparse::Csc;
+use crate::options::Range;
 use crate::problem::Problem;
 use crate::problem::harmonic_balance::HarmonicBalance;
 use num_complex::Complex64;
@@ -35,20 +36,20 @@ const COMPUTED_PEAK_MOST_POINTS: usize = 100;
 /// Kind: tuned; measured on: not recorded.
 const COMPUTED_PEAK_STEP: f64 = 0.01;
 
-/// A synthesised resonance with the motion of the mode there.
+/// A synthesised resonance, with the motion of the mode at that amplitude.
 pub(crate) struct AtPeak<'a> {
     pub state: &'a State,
     /// Angular frequency of the force.
     pub omega: f64,
-    /// The condensed mode, its samples and the packed total motion in its units.
+    /// The condensed mode, the samples of its laws, and the packed total motion in its units.
     pub condensed: &'a Condensed,
     pub samples: usize,
     pub motion: &'a [f64],
-    /// Degree of freedom whose amplitude counts, in the caller's numbering.
+    /// Degree of freedom whose amplitudes are compared, in the caller's numbering.
     pub response_dof: usize,
 }
 
-/// Amplitude of the synthesised resonance over that of the computed one next to it, minus 1; NaN if none was found.
+/// Ratio of the synthesised amplitude to that of the computed resonance next to it, minus 1; NaN if none was found.
 ///
 /// # Errors
 /// `OutOfMemory`; those of callbacks that give up; `StoppedByCaller`.
@@ -81,13 +82,13 @@ fn computed(
     let forced = peak
         .condensed
         .under_force(&load.force, damping, 2.0 * load.ratio * state.omega)?;
-    let range = ((omega - width).max(0.1 * omega), omega + width);
+    let range = Range::new((omega - width).max(0.1 * omega), omega + width);
     let mut problem = HarmonicBalance::new(&forced, peak.response_dof, range, peak.samples, None, interrupt)?;
     problem.set_factorised(true);
     let n = forced.unknowns();
-    let settings = |(start, end): (f64, f64)| Settings {
-        start,
-        end,
+    let settings = |range: Range| Settings {
+        start: range.start,
+        end: range.stop,
         tolerance: 1e-9,
         max_iterations: 25,
         steps: StepControl::new(0.0, 0.0, COMPUTED_PEAK_STEP),
@@ -119,7 +120,7 @@ fn computed(
     let settings = if rising >= 0.0 {
         upwards
     } else {
-        settings((range.1, range.0))
+        settings(Range::new(range.stop, range.start))
     };
     let mut before = first.try_clone()?;
     let mut continuation = Continuation::new(settings, first)?;
@@ -142,8 +143,8 @@ fn computed(
     Ok(None)
 }
 
-/// Newton's method from the motion of the mode, at its frequency or at its phase. Contacts far from where the force acts
-/// may move otherwise than in the mode, so that the solution need not be near.
+/// Solves by Newton's method from the motion of the mode, at its frequency or at its phase. Contacts far from where
+/// the force acts may move otherwise than in the mode, so that the solution need not be near.
 fn solve(
     problem: &mut dyn Problem,
     corrector: &mut Corrector,
@@ -169,7 +170,7 @@ fn solve(
     )
 }
 
-/// The motion of the mode with the phase that the force gives it, and the frequency.
+/// The motion of the mode with the phase that the force gives it, followed by the frequency.
 fn turned(peak: &AtPeak<'_>, n: usize) -> Result<Vec<f64>> {
     let set = peak.condensed.set();
     let turn = peak.state.turn(peak.omega);

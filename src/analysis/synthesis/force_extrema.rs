@@ -68,7 +68,7 @@ pub(super) fn find(refinement: &mut Refinement<'_>, states: &[State], found: &mu
     Ok(())
 }
 
-/// The state at which the factor of the force is 1, between two amplitudes with logarithms of the factor of opposite sign.
+/// The state at which the factor of the force is 1, between two amplitudes with log factors of opposite sign.
 fn crossing(
     refinement: &mut Refinement<'_>,
     k: usize,
@@ -92,7 +92,8 @@ fn crossing(
     Ok(found)
 }
 
-/// The minimum of sign·ln F in a bracket of three points around point k: parabolas, and golden sections where they do not help.
+/// The minimum of sign·ln F in a bracket of three points around point k, by parabolas, and by golden sections where
+/// these do not help.
 fn minimum(
     refinement: &mut Refinement<'_>,
     (k, at): (usize, f64),
@@ -146,7 +147,7 @@ fn minimum(
     Ok(b)
 }
 
-/// The vertex of the parabola through three points.
+/// Abscissa of the vertex of the parabola through three points; `None` where they lie on a line.
 fn vertex(a: (f64, f64), b: (f64, f64), c: (f64, f64)) -> Option<f64> {
     let (u, v) = (b.0 - a.0, b.0 - c.0);
     let (s, t) = (u * (b.1 - c.1), v * (b.1 - a.1));

@@ -5,11 +5,11 @@ use crate::analysis::synthesis::resonance::Refinement;
 use crate::error::{Result, try_push};
 use num_complex::Complex64;
 
-/// A level of the force along a mode: where it is extreme, the resonances of a detached curve meet, or those of two curves do.
+/// An extremum of the force along a mode: there the resonances of a detached curve meet, or those of two curves.
 #[derive(Clone, Copy, Debug)]
 pub struct ForceExtremum {
     pub log10_amplitude: f64,
-    /// Factor of all forces.
+    /// Factor of all forces at the extremum.
     pub factor: f64,
     pub is_maximum: bool,
 }
@@ -19,7 +19,7 @@ pub struct ModeMotion {
     /// Angular frequency of the force.
     pub omega: f64,
     pub log10_amplitude: f64,
-    /// Complex, (H + 1) × ndof, harmonic after harmonic.
+    /// Harmonics of all degrees of freedom: complex, (H + 1) × ndof, harmonic after harmonic.
     pub harmonics: Vec<Complex64>,
 }
 
@@ -31,7 +31,7 @@ pub struct Motions {
 }
 
 impl Motions {
-    /// Appends the motion of the state solved last.
+    /// Appends the motion of the state that was solved last, at a resonance.
     pub(super) fn push(&mut self, refinement: &Refinement<'_>, state: &State, omega: f64) -> Result<()> {
         let motion = ModeMotion {
             omega,

@@ -13,7 +13,7 @@ pub struct SynthesisPoint {
     pub omega: f64,
     /// Fundamental of the response degree of freedom of the branch, with its phase relative to the force.
     pub response: Complex64,
-    /// Modal amplitude.
+    /// Modal amplitude of the mode at this response.
     pub modal_amplitude: f64,
     /// Natural angular frequency ω₀ at this amplitude.
     pub natural_omega: f64,
@@ -38,13 +38,13 @@ pub(crate) struct Load {
 pub(crate) struct State {
     pub omega: f64,
     pub damping: f64,
-    /// Damping ratio of the mode alone, without what the load adds: that with which its motion was computed.
+    /// Damping ratio of the mode itself, with which its motion was computed, without the damping that the load adds.
     pub own_damping: f64,
     /// Square of the modal amplitude.
     pub square: f64,
-    /// X₁ᴴ F
+    /// Complex work X₁ᴴ F of the force on the fundamental.
     pub work: Complex64,
-    /// X₁ of the response degree of freedom.
+    /// Fundamental X₁ of the response degree of freedom.
     pub response: Complex64,
     pub log10: f64,
     pub fundamental_share: f64,
@@ -73,7 +73,7 @@ impl Load {
     }
 }
 
-/// Re xᴴ A x
+/// Real part of the quadratic form xᴴ A x.
 pub(crate) fn form(a: &Csc, x: &[Complex64]) -> f64 {
     let mut form = 0.0;
     for (j, xj) in x.iter().enumerate() {
@@ -99,7 +99,7 @@ impl State {
         (factor > 0.0 && factor.is_finite()).then(|| factor.ln())
     }
 
-    /// Half the distance of the two Ω²; `None` if the force cannot maintain the amplitude.
+    /// Half the difference of the two solutions Ω²; `None` if the force cannot maintain the amplitude.
     pub fn spread(&self) -> Option<f64> {
         let (d, w2) = (self.damping, self.omega * self.omega);
         let b = self.work.norm() / self.square;
@@ -123,7 +123,7 @@ impl State {
         })
     }
 
-    /// Phase of the response at frequency `omega` over that of the mode: the one at which the force does the required
+    /// Phase factor of the response at frequency `omega` relative to the mode, with which the force does the required
     /// work.
     pub fn turn(&self, omega: f64) -> Complex64 {
         let stiffness = Complex64::new(

@@ -62,8 +62,8 @@ impl<'a> Solver<'a> {
         )?;
         let n = problem.size();
         let settings = Settings {
-            start: data.range.0,
-            end: data.range.1,
+            start: data.range.start,
+            end: data.range.stop,
             tolerance: 1e-10,
             max_iterations: 25,
             steps: StepControl::new(0.0, 0.0, 0.0),
@@ -92,8 +92,8 @@ impl<'a> Refinement<'a> {
         })
     }
 
-    /// The state of zero excess between points k and k + 1, whose excesses are given, by the Illinois variant of
-    /// regula falsi in log₁₀ a.
+    /// The state of zero excess force between points k and k + 1, whose excesses are given, by the Illinois variant
+    /// of regula falsi in log₁₀ a.
     pub fn between(&mut self, k: usize, first: f64, last: f64) -> Result<Option<State>> {
         self.select_richer(k)?;
         let (Some(a), Some(b)) = (self.point(k)?, self.point(k + 1)?) else {
@@ -128,7 +128,8 @@ impl<'a> Refinement<'a> {
         Ok(found)
     }
 
-    /// The state at the amplitude between two neighbouring points whose log₁₀ is p; `None` where the mode is not found there.
+    /// The state at the amplitude with log₁₀ a = p between points k and k + 1; `None` where the mode is not found at
+    /// it.
     pub fn state_at(&mut self, k: usize, p: f64) -> Result<Option<State>> {
         self.select_richer(k)?;
         match (self.point(k)?, self.point(k + 1)?) {
@@ -153,7 +154,7 @@ impl<'a> Refinement<'a> {
         Ok(x)
     }
 
-    /// Solves with the harmonics of the richer one of points k and k + 1.
+    /// Selects the equations with the harmonics of that point, k or k + 1, which has more.
     fn select_richer(&mut self, k: usize) -> Result<()> {
         let carried = |point: usize| self.branch.condensed_at(point).set().numbers().len();
         let richer = if carried(k) > carried(k + 1) { k } else { k + 1 };
@@ -175,7 +176,7 @@ impl<'a> Refinement<'a> {
         }
     }
 
-    /// A point of the curve as the continuation stored it, transferred to the current harmonics.
+    /// Point k of the curve as the continuation stored it, transferred to the current harmonics.
     fn point(&self, k: usize) -> Result<Option<Point>> {
         let Some((v, tangent)) = self.data.state(k) else {
             return Ok(None);

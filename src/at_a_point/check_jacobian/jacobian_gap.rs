@@ -3,45 +3,45 @@
 /// Derivative to which an entry belongs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tangent {
-    /// ∂f/∂u
+    /// Force by motion, ∂f/∂u.
     #[default]
     ForceByMotion,
-    /// ∂f/∂v
+    /// Force by velocity, ∂f/∂v.
     ForceByVelocity,
-    /// ∂f/∂z
+    /// Force by state, ∂f/∂z.
     ForceByState,
-    /// ∂zⱼ/∂zⱼ₋₁
+    /// State by the state before, ∂zⱼ/∂zⱼ₋₁.
     StateByState,
-    /// ∂zⱼ/∂uⱼ₋₁
+    /// State by the motion before, ∂zⱼ/∂uⱼ₋₁.
     StateByMotionBefore,
-    /// ∂zⱼ/∂uⱼ
+    /// State by the motion, ∂zⱼ/∂uⱼ.
     StateByMotion,
-    /// ∂zⱼ/∂vⱼ₋₁
+    /// State by the velocity before, ∂zⱼ/∂vⱼ₋₁.
     StateByVelocityBefore,
-    /// ∂zⱼ/∂vⱼ
+    /// State by the velocity, ∂zⱼ/∂vⱼ.
     StateByVelocity,
-    /// ∂zⱼ/∂ω
+    /// State by the frequency, ∂zⱼ/∂ω.
     StateByFrequency,
 }
 
 /// The entry of the tangents with the largest deviation from its difference quotient.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JacobianGap {
-    /// |given − difference| times the size of the perturbed variable, relative to the size of the result. Correct
-    /// tangents of a smooth force stay below 1e-6.
+    /// Largest deviation |given − difference| times the size of the perturbed variable, relative to the size of the
+    /// result. Correct tangents of a smooth force stay below 1e-6.
     pub gap: f64,
-    /// The derivative.
+    /// Derivative to which the entry belongs.
     pub tangent: Tangent,
-    /// Sample of the test motion.
+    /// Index of the sample of the test motion.
     pub sample: usize,
-    /// Row of the entry; for [`Tangent::ForceByState`] the force.
+    /// Row of the entry; for [`Tangent::ForceByState`] the index of the force.
     pub row: usize,
-    /// Column of the entry; for [`Tangent::ForceByState`] the perturbed state before the sample.
+    /// Column of the entry; for [`Tangent::ForceByState`] the index of the perturbed state before the sample.
     pub column: usize,
-    /// The value of the caller; for [`Tangent::ForceByState`] the change of force that follows from it per change
-    /// of that state.
+    /// The caller's value; for [`Tangent::ForceByState`] the change of force that follows from it per change of this
+    /// state.
     pub given: f64,
-    /// The difference quotient.
+    /// The difference quotient with which the value is compared.
     pub difference: f64,
 }
 

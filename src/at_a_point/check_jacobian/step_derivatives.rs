@@ -8,8 +8,8 @@ use crate::contact::laws::User;
 use crate::contact::march::March;
 use crate::error::{Result, try_vec};
 
-/// One step of a law with states: a period of two samples, of which the first is compared and the second is the one
-/// before it. Its frequency gives them the distance of the samples of the test motion.
+/// One step of a law with states, as a period of two samples: the first one is compared, the second is the one before
+/// it. The frequency gives them the distance of the samples of the test motion.
 struct Step {
     omega: f64,
     u: Vec<f64>,
@@ -21,14 +21,14 @@ struct Step {
 #[derive(Clone, Copy)]
 enum Perturbed {
     State(usize),
-    /// `true` for the motion before, and the direction.
+    /// A motion: `true` for the one before, and its direction.
     Motion(bool, usize),
     Velocity(bool, usize),
     Frequency,
 }
 
 impl Step {
-    /// The perturbed number.
+    /// The number of the step that is perturbed.
     fn place(&mut self, d: usize, moved: Perturbed) -> &mut f64 {
         let at = |before: bool, k: usize| if before { d + k } else { k };
         match moved {
@@ -44,7 +44,7 @@ impl Step {
     }
 }
 
-/// Perturbs every step separately.
+/// Compares the tangents of a law with states. Every step is perturbed separately.
 pub(super) fn with_states(law: &User, motion: &Motion) -> Result<JacobianGap> {
     let (d, s) = (law.directions, law.states);
     let mut whole = March::new(d, s, SAMPLES)?;
@@ -107,7 +107,7 @@ pub(super) fn with_states(law: &User, motion: &Motion) -> Result<JacobianGap> {
     Ok(worst)
 }
 
-/// A step with its perturbed variable, and the steps perturbed to both sides.
+/// A step with its perturbed variable; and the steps perturbed to both sides.
 struct Compared<'a, D: Fn(f64, f64) -> f64> {
     sample: usize,
     moved: Perturbed,
@@ -146,7 +146,7 @@ impl<D: Fn(f64, f64) -> f64> Compared<'_, D> {
         }
     }
 
-    /// Compares the change of force that follows from the states, and that at given states.
+    /// Compares two changes of force: the one that follows from the states, and the one at given states.
     fn forces(&self, sizes: &[f64], worst: &mut JacobianGap) {
         let at = self.marches.0;
         let (d, s) = (at.directions, at.states);

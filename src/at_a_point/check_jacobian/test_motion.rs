@@ -15,13 +15,13 @@ pub(super) fn step_of(size: f64) -> f64 {
     f64::EPSILON.cbrt() * size
 }
 
-/// The test motion.
+/// Periodic motion at which a law is tested: a mean and the harmonics 1 and 3.
 pub(super) struct Motion {
     pub omega: f64,
     /// Motions and velocities, samples × d; no velocities for a force that does not depend on them.
     pub u: Vec<f64>,
     pub v: Vec<f64>,
-    /// Sizes of the motions.
+    /// Amplitude of the motion in each of the d directions.
     pub amplitudes: Vec<f64>,
 }
 

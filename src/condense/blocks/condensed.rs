@@ -24,9 +24,9 @@ const CONDENSED_ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// The reference stiffness κ of the contacts. Solutions do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reference {
-    /// kt(1 + i)/2, kt/2 for the mean: no pole on the real axis, with or without damping.
+    /// κ = kt(1 + i)/2, and kt/2 for the mean: no pole lies on the real axis, with or without damping.
     Complex,
-    /// kt: stuck contacts are eliminated from Newton's equations. The poles are the resonances of the stuck
+    /// κ = kt: stuck contacts are eliminated from Newton's equations. The poles are the resonances of the stuck
     /// structure, so that this is for damped structures. Springs are never eliminated.
     Stuck,
 }
@@ -42,18 +42,18 @@ impl Reference {
     }
 }
 
-/// A law on its relative coordinates.
+/// A contact law on its relative coordinates.
 #[derive(Clone, Debug)]
 pub struct AssembledLaw {
     /// The relative coordinates, one per direction of the law.
     pub coordinates: Vec<usize>,
-    /// Number of the contact in the model.
+    /// Index of the contact in the model.
     pub contact: usize,
-    /// Normal direction of the law, if it has one.
+    /// Normal direction of the contact, if its law has one.
     pub normal: Option<usize>,
-    /// The law in the solver's units; that of a reference load where the load depends on the frequency.
+    /// The law in the solver's units. Where the load depends on the frequency, it is the law of the reference load.
     pub law: Arc<dyn Law>,
-    /// The load that depends on the frequency, if it does.
+    /// The normal load where it depends on the frequency, else `None`.
     pub load: Option<Box<TiedLoad>>,
 }
 
@@ -74,25 +74,25 @@ impl AssembledLaw {
 pub struct Condensed {
     pub(crate) set: HarmonicSet,
     pub(crate) degrees: DegreeMap,
-    /// Order of the matrices of a harmonic.
+    /// Number of coordinates of a harmonic's matrices: degrees of freedom, or columns of the basis.
     pub(crate) order: usize,
-    /// The structure whose matrices are on a basis.
+    /// The structure on all its degrees of freedom where the matrices are on a basis, else `None`.
     pub(crate) structure: Option<Structure>,
     /// Estimated relative error of the flexibility on the basis; 0 without one.
     pub(crate) certificate: f64,
     pub(crate) length: f64,
     pub(crate) blocks: Vec<HarmonicBlock>,
-    /// Shared by the condensed models of all resolutions.
+    /// Contact laws on their coordinates, shared by the condensed models of all resolutions.
     pub(crate) laws: Arc<Vec<AssembledLaw>>,
     /// Stiffness per coordinate: the sum of kt of its contacts, or more if one is a spring with growing stiffness.
     pub(crate) stiffness: Vec<f64>,
-    /// Their changes of force by the velocity.
+    /// Damping per coordinate: largest change of force per velocity, summed over its contacts.
     pub(crate) resistance: Vec<f64>,
-    /// Stiffness per coordinate that defines κ: the same, or less where contacts are near-rigid.
+    /// Stiffness per coordinate that defines κ: the contacts' stiffness, or less where contacts are near-rigid.
     pub(crate) reference_stiffness: Vec<f64>,
-    /// The exchange of each coordinate whose near-rigid slider has one.
+    /// Per coordinate the exchanged motion of its near-rigid slider, if it has one.
     pub(crate) exchanges: Vec<Option<Exchange>>,
-    /// All laws of a coordinate can stick, as friction does.
+    /// Per coordinate, whether all its laws can stick, as friction does.
     pub(crate) can_stick: Vec<bool>,
     pub(crate) preloaded: bool,
     pub(crate) reference: Reference,
@@ -101,16 +101,16 @@ pub struct Condensed {
     pub(crate) contact_classes: ContactClasses,
     pub(crate) sectors: usize,
     pub(crate) in_step: usize,
-    /// Sectors and engine order, where the structure is a whole wheel.
+    /// Number of sectors and engine order where the structure is a whole wheel, else `None`.
     pub(crate) wheel: Option<(usize, i64)>,
-    /// The same as a tuned wheel with differences of low rank, where its factors are made so.
+    /// The whole wheel as a tuned one with differences of low rank, where it is factorised in that way, else `None`.
     pub(crate) tuned: Option<Arc<TunedPlan>>,
-    /// Factor of the samples of laws without exact events.
+    /// Factor by which laws without exact events are sampled more finely than by default.
     pub(crate) refinement: usize,
 }
 
 impl Condensed {
-    /// The same model with other blocks, one for each harmonic of `set`.
+    /// A copy of this condensed model with other blocks, one for each harmonic of `set`.
     pub(crate) fn with_blocks(&self, set: HarmonicSet, blocks: Vec<HarmonicBlock>) -> Result<Self> {
         const CONTEXT: &str = "the matrices per harmonic";
         Ok(Self {
@@ -147,15 +147,15 @@ impl Condensed {
         Ok(())
     }
 
-    /// The carried harmonics.
+    /// The set of carried harmonics.
     #[must_use]
     #[inline]
     pub fn set(&self) -> &HarmonicSet {
         &self.set
     }
 
-    /// Coordinates of the matrices of a harmonic: the independent degrees of freedom of the structure (one sector), or
-    /// those of its basis.
+    /// Number of coordinates of a harmonic's matrices: the independent degrees of freedom of the structure (one
+    /// sector), or the columns of its basis.
     #[must_use]
     #[inline]
     pub fn ndof(&self) -> usize {
@@ -168,13 +168,14 @@ impl Condensed {
         self.structure.as_ref()
     }
 
-    /// Whether the structure is on a basis.
+    /// Whether the matrices are on a basis.
     #[must_use]
     pub fn is_reduced(&self) -> bool {
         self.structure.is_some()
     }
 
-    /// Motion of all independent degrees of freedom in the i-th carried harmonic from that of its coordinates.
+    /// Motion of all independent degrees of freedom in the i-th carried harmonic, from the motion `q` of its
+    /// coordinates.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -244,7 +245,7 @@ impl Condensed {
         &self.blocks
     }
 
-    /// The laws, in the order of the contacts.
+    /// The contact laws on their coordinates, in the order of the contacts.
     #[must_use]
     #[inline]
     pub fn laws(&self) -> &[AssembledLaw] {
@@ -288,12 +289,12 @@ impl Condensed {
         self.wheel
     }
 
-    /// The wheel as a tuned one with differences of low rank, where its factors are made so.
+    /// The whole wheel as a tuned one with differences of low rank, where it is factorised in that way, else `None`.
     pub(crate) fn tuned(&self) -> Option<&Arc<TunedPlan>> {
         self.tuned.as_ref()
     }
 
-    /// Harmonics in which all sectors move alike are the multiples of this number.
+    /// Step m between the harmonics in which all sectors move alike: these are the multiples of m.
     #[must_use]
     pub fn in_step(&self) -> usize {
         self.in_step
@@ -331,12 +332,14 @@ impl Condensed {
         self.stiffness[coordinate]
     }
 
-    /// Largest force of the contacts of a coordinate over its motion at an angular frequency.
+    /// Largest force of the contacts of a coordinate over its motion at the angular frequency `nu`: stiffness +
+    /// ν·damping.
     pub(crate) fn impedance(&self, coordinate: usize, nu: f64) -> f64 {
         self.stiffness[coordinate] + nu * self.resistance[coordinate]
     }
 
-    /// Rounding of the force of a coordinate over the size of its motion if its contacts are near-rigid, otherwise 0.
+    /// Rounding error of the force of a coordinate over the size of its motion if its contacts are near-rigid,
+    /// otherwise 0.
     #[must_use]
     #[inline]
     pub fn rounding(&self, coordinate: usize) -> f64 {
@@ -371,7 +374,7 @@ impl Condensed {
         self.preloaded
     }
 
-    /// Factor of the samples of laws without exact events.
+    /// Factor by which laws without exact events are sampled more finely than by default.
     #[must_use]
     pub fn refinement(&self) -> usize {
         self.refinement

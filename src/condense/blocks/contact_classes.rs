@@ -6,14 +6,15 @@ use crate::error::{Result, try_push, try_room};
 use crate::model::{Model, copy};
 use std::sync::Arc;
 
-/// All contacts of a model. Linear ones have no relative coordinate.
+/// The contacts of a model by treatment: active ones, linear springs (which have no relative coordinate), and
+/// contacts without force.
 #[derive(Clone, Debug, Default)]
 pub struct ContactClasses {
-    /// Shared by the condensed models of all resolutions.
+    /// All contacts in the order of the model, shared by the condensed models of all resolutions.
     all: Arc<Vec<Contact>>,
     pub(crate) active: Vec<usize>,
     pub(crate) never_slipping: Vec<usize>,
-    /// Directions of the linear contacts, as (contact, direction).
+    /// Directions of the linear contacts, as pairs (contact, direction).
     pub(crate) linear: Vec<(usize, usize)>,
     inert: usize,
 }
@@ -42,7 +43,7 @@ impl ContactClasses {
         Ok(contact_classes)
     }
 
-    /// All contacts, in the order of the model.
+    /// All contacts of the model, in its order.
     #[must_use]
     pub fn contacts(&self) -> &[Contact] {
         &self.all

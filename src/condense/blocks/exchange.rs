@@ -27,19 +27,19 @@ use num_complex::Complex64;
 /// Kind: rounding.
 pub(crate) const CREEP: f64 = 1e-6;
 
-/// The exchange of one coordinate.
+/// Exchange of the motion y of one coordinate for x = f/α + d(y − f/k)/dτ, where f is the force of its slider.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exchange {
-    /// α
+    /// α, the stiffness that defines the exchanged motion x.
     pub stiffness: f64,
-    /// 1/k
+    /// 1/k, the compliance of the stick stiffness k; 0 if the slider is rigid.
     pub(crate) compliance: f64,
-    /// Angular frequency √(k/m) at which the stick rings, with the mass that the structure has there.
+    /// Angular frequency √(k/m) at which the stick stiffness k rings with the mass m of the structure at the contact.
     pub ring: f64,
 }
 
 impl Exchange {
-    /// s of a harmonic.
+    /// Factor s of the derivative d/dτ in harmonic `number`.
     pub(crate) fn rate(number: usize) -> Complex64 {
         if number == 0 {
             CREEP.into()
@@ -48,7 +48,7 @@ impl Exchange {
         }
     }
 
-    /// The motion y in a harmonic, where the exchanged one is x and the force f.
+    /// The motion y of the contact in harmonic `number`, from the exchanged motion x and the force f.
     pub(crate) fn motion(&self, number: usize, x: Complex64, f: Complex64) -> Complex64 {
         (x - f / self.stiffness) / Self::rate(number) + f * self.compliance
     }

@@ -11,19 +11,19 @@ pub enum FlexibilityWay {
     SingleFrequency = 0,
     /// A sum over all modes of the wave.
     Modes = 1,
-    /// A sum over its poles: damping couples the modes.
+    /// A sum over the poles of the wave: damping couples the modes.
     Poles = 2,
     /// Factors at each frequency: the small motion of a near-rigid contact is lost in the rounding of modes.
     NearRigid = 3,
-    /// Factors: damping couples the modes, and those of so few degrees of freedom take no longer than poles.
+    /// Factors: damping couples the modes, and with so few degrees of freedom factors take no longer than poles.
     Few = 4,
-    /// Factors: damping couples the modes, and those of so sparse matrices take no longer than poles.
+    /// Factors: damping couples the modes, and with matrices so sparse factors take no longer than poles.
     Sparse = 5,
     /// Factors: there are too many degrees of freedom for all modes or poles.
     Many = 6,
     /// Factors: the reference stiffness is not definite, or poles are badly conditioned.
     Unsuitable = 7,
-    /// Factors: sums did not agree with them at an end of the range.
+    /// Factors: sums over modes or poles did not agree with a factorisation at an end of the range.
     Disagreement = 8,
     /// Factors of the waves of a tuned wheel, and a correction of low rank for the differences of its sectors.
     TunedWheel = 9,

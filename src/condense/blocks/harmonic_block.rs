@@ -32,9 +32,9 @@ pub type Values = Arc<Vec<Complex64>>;
 /// Matrices, forces and contact rows of one harmonic.
 #[derive(Clone, Debug)]
 pub struct HarmonicBlock {
-    /// Harmonic number h.
+    /// Index h of the harmonic; 0 is the mean.
     pub number: usize,
-    /// Motion of the next sector over that of this one.
+    /// Motion of the next sector over that of this sector: the phase factor of the wave.
     pub next: Complex64,
     /// K_h with springs, contacts that never slip, structural damping iD_h, and Wᴴ κ W; its pattern holds C and M too. Harmonics
     /// of one wave with one κ share it.
@@ -43,29 +43,30 @@ pub struct HarmonicBlock {
     pub stiffness: Values,
     /// D_h of the structural damping iD_h, ηK_h included, at the entries of the pattern; `None` without such damping.
     pub structural: Option<Values>,
-    /// C_h at the entries of the pattern.
+    /// Damping C_h at the entries of the pattern.
     pub damping: Values,
-    /// M_h at the entries of the pattern.
+    /// Mass M_h at the entries of the pattern.
     pub mass: Values,
-    /// The artificial damping.
+    /// Matrix of the artificial damping of a nonlinear mode.
     pub artificial: Artificial,
     /// Modes or poles of the wave along a sweep, where the flexibility is a sum over them.
     pub source: Option<Source>,
-    /// Why there are none.
+    /// Why the block has no modes or poles, where `source` is `None`.
     pub without_source: FlexibilityWay,
     /// F_h in units of the length scale.
     pub force: Vec<Complex64>,
-    /// Amplitudes of the forces that grow with ω², over ω², likewise; `None` without such forces.
+    /// Amplitudes over ω² of the forces that grow with ω², in units of the length scale; `None` without such forces.
     pub unbalance: Option<Vec<Complex64>>,
     /// Terms of a speed that is tied to the frequency; `None` without.
     pub tied: Option<TiedValues>,
     /// Rows of W, one per relative coordinate.
     pub rows: Vec<MotionRow>,
-    /// The same over the independent degrees of freedom.
+    /// Rows of W over the independent degrees of freedom.
     pub structural_rows: Vec<Row>,
-    /// Rows of the relative motions of linear contacts, which are no coordinates.
+    /// Rows of the relative motions of linear contacts, which have no relative coordinate.
     pub linear_rows: Vec<MotionRow>,
-    /// On a basis, the linear springs: rows of force and motion over the independent degrees of freedom, stiffness.
+    /// Linear springs of a structure on a basis: row of force and row of motion over the independent degrees of
+    /// freedom, and stiffness.
     pub springs: Vec<(Row, Row, f64)>,
     /// The basis on which the matrices are; `None`: they are on the independent degrees of freedom.
     pub view: Option<ReducedView>,
@@ -74,14 +75,14 @@ pub struct HarmonicBlock {
 /// p²K₁ and pG at the entries of the pattern, for Z_h = … + ω² p²K₁ + ihω² pG.
 #[derive(Clone, Debug)]
 pub struct TiedValues {
-    /// p²K₁
+    /// p²K₁, stiffness that grows with the square of a tied speed Ω = pω, over ω².
     pub stiffness: Vec<Complex64>,
-    /// pG
+    /// pG, gyroscopic matrix of a tied speed Ω = pω, over ω.
     pub gyroscopic: Vec<Complex64>,
 }
 
 impl HarmonicBlock {
-    /// The way to its flexibility, as far as it is known before a sweep.
+    /// How the flexibility of this harmonic is made, as far as it is known before a sweep.
     pub fn flexibility_way(&self) -> FlexibilityWay {
         match &self.source {
             Some(Source::Modes(_)) => FlexibilityWay::Modes,
@@ -90,7 +91,7 @@ impl HarmonicBlock {
         }
     }
 
-    /// A row over the independent degrees of freedom as one over the coordinates.
+    /// Rewrites a row over the independent degrees of freedom as one over the coordinates of the block.
     pub fn row(&self, row: &Row) -> Result<MotionRow> {
         match &self.view {
             Some(view) => view.row(row),
@@ -98,7 +99,7 @@ impl HarmonicBlock {
         }
     }
 
-    /// Whether the matrices are those of another block, in the same memory.
+    /// Whether this block and another one hold their matrices in the same memory.
     pub fn shares_matrices(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.reference, &other.reference) && Arc::ptr_eq(&self.mass, &other.mass)
     }
@@ -136,7 +137,7 @@ impl HarmonicBlock {
         }
     }
 
-    /// y = M x
+    /// y ← M x with the mass matrix of the block.
     pub fn multiply_mass(&self, x: &[Complex64], y: &mut [Complex64]) {
         y.fill(Complex64::ZERO);
         let pattern = &self.reference;
@@ -175,7 +176,7 @@ pub(crate) fn of_same_wave<'b>(
     same.or_else(|| sharing().next())
 }
 
-/// The block of harmonic `number` from that of another harmonic of its wave; see [`of_same_wave`]. `kappa` is the reference
+/// Makes the block of harmonic `number` from a block of the same wave; see [`of_same_wave`]. `kappa` is the reference
 /// stiffness of a coordinate in a harmonic.
 pub(crate) fn shared_block(
     model: &Model,
@@ -361,7 +362,7 @@ pub(crate) fn harmonic_block(
     matrices.into_block(model, number, contact_classes, rows)
 }
 
-/// Rows as those of matrices on the degrees of freedom.
+/// Rewrites rows of relative motions for matrices on all degrees of freedom.
 fn over_dofs(rows: &[Row]) -> Result<Vec<MotionRow>> {
     let mut found = Vec::new();
     for row in rows {
@@ -390,7 +391,7 @@ mod tests {
         let mut blocks = Vec::new();
         let mut shared = 0;
         for number in 0..=40 {
-            // The same in some harmonics.
+            // κ is equal in groups of 15 harmonics.
             let kappa = |c: usize, number: usize| Complex64::new(1.0 + c as f64, 0.1 * (number / 15) as f64);
             let made = harmonic_block(model, number, contacts, |c| kappa(c, number), &interrupt).unwrap();
             if let Some(known) = of_same_wave(model, number, &blocks.iter()) {

@@ -10,7 +10,7 @@ use num_complex::Complex64;
 /// Kind: fixed.
 const ARRAYS: usize = 5;
 
-/// Refuses what a limit of bytes does not allow; 0 is no limit.
+/// Refuses a `need` of bytes above the `limit`; a limit of 0 allows all.
 pub fn within(limit: usize, need: usize) -> Result<()> {
     if limit == 0 || need <= limit {
         return Ok(());
@@ -21,12 +21,12 @@ pub fn within(limit: usize, need: usize) -> Result<()> {
     )))
 }
 
-/// The error of a need beyond a limit.
+/// The error for a need of memory above the limit.
 pub fn beyond(sentence: std::fmt::Arguments<'_>) -> Error {
     Error::new(Status::OutOfMemory, sentence).beyond_limit()
 }
 
-/// Bytes in MB, rounded up.
+/// Converts bytes to MB, rounded up.
 pub fn mega(bytes: usize) -> usize {
     bytes.div_ceil(1 << 20)
 }

@@ -12,6 +12,5 @@ pub(crate) mod reduction;
 pub(crate) mod reference_stiffness;
 pub(crate) mod relative_coordinates;
 pub(crate) mod resolution;
-pub(crate) mod sweep;
 pub(crate) mod tied_load;
 pub(crate) mod under_force;

@@ -43,37 +43,37 @@ impl ModelCache {
         Self::new((0..EXTENDED_FIRST).chain(geometric))
     }
 
-    /// The numbers of harmonics.
+    /// Numbers of harmonics of the slots, rising.
     pub fn numbers(&self) -> impl DoubleEndedIterator<Item = usize> + ExactSizeIterator + '_ {
         self.slots.iter().map(|slot| slot.0)
     }
 
-    /// The first slot with a number of harmonics that is not below one; the number of slots where there is none.
+    /// Index of the first slot with at least `highest` harmonics; the number of slots where there is none.
     pub fn slot_with(&self, highest: usize) -> usize {
         self.slots.partition_point(|slot| slot.0 < highest)
     }
 
-    /// Number of slots.
+    /// Number of slots, filled or not.
     pub fn slots(&self) -> usize {
         self.slots.len()
     }
 
-    /// Highest harmonic of a slot.
+    /// Highest harmonic of the models in a slot.
     pub fn highest(&self, slot: usize) -> usize {
         self.slots[slot].0
     }
 
-    /// Any model that was made before.
+    /// Any model that is in the cache; `None` if all slots are empty.
     pub fn any(&self) -> Option<&Resolution> {
         self.slots.iter().find_map(|slot| slot.1.get())
     }
 
-    /// The model of the slot of a number of harmonics, if it was made.
+    /// The model of the slot for harmonics up to `highest`, if it was made.
     pub fn made(&self, highest: usize) -> Option<&Resolution> {
         self.slots.get(self.slot_with(highest))?.1.get()
     }
 
-    /// The model with the most harmonics that was made for a slot below one.
+    /// The model with the most harmonics among the filled slots below a given one.
     pub fn below(&self, slot: usize) -> Option<&Resolution> {
         self.slots[..slot].iter().rev().find_map(|slot| slot.1.get())
     }

@@ -21,12 +21,12 @@ pub struct Reduction {
     pub never_slipping: usize,
     /// Contacts without force (no stiffness, or no slip limit).
     pub inert: usize,
-    /// Highest harmonic number of the points: the requested one or, where a tolerance chose, the highest that a
-    /// point carries.
+    /// Highest harmonic of the points: the requested one or, where a tolerance chose, the highest that a point
+    /// carries.
     pub harmonics_asked: usize,
     /// Number of carried harmonics, the largest over the points.
     pub harmonics_carried: usize,
-    /// Whether the mean is carried.
+    /// Whether the mean (harmonic 0) is carried.
     pub mean_carried: bool,
     /// Whether the even harmonics were removed because laws and force are odd.
     pub even_removed: bool,
@@ -38,11 +38,11 @@ pub struct Reduction {
     pub basis: usize,
     /// Estimated relative error of the motion of the structure on a basis, the largest over the points; 0 without one.
     pub certificate: f64,
-    /// Number of the harmonic whose amplitude is that of the response.
+    /// Index of the harmonic whose amplitude is reported as the response.
     pub response_harmonic: usize,
-    /// Whether the first point was found from the given guess; `None` without one.
+    /// Whether the first point was found from the guess of the caller; `None` without a guess.
     pub guess_used: Option<bool>,
-    /// How the flexibility of the contacts is made, and why so.
+    /// How the flexibility of the contacts is made, and why in this way.
     pub flexibility_way: FlexibilityWay,
 }
 
@@ -60,13 +60,14 @@ impl Condensed {
         Ok(self.reduction_with(model, options, held_by_contacts))
     }
 
-    /// The way of the lowest vibrating harmonic, as far as it is known before a sweep.
+    /// How the flexibility of the lowest vibrating harmonic is made, as far as it is known before a sweep.
     fn flexibility_way(&self) -> FlexibilityWay {
         let vibrating = self.blocks.iter().find(|block| block.number > 0);
         vibrating.map_or(FlexibilityWay::SingleFrequency, HarmonicBlock::flexibility_way)
     }
 
-    /// The same with the number of rigid-body modes that contacts alone hold.
+    /// The parts of the problem that were removed, as `reduction` gives them, with a known number of rigid-body modes
+    /// that contacts alone hold.
     #[must_use]
     pub fn reduction_with(&self, model: &Model, options: &SolverOptions, held_by_contacts: usize) -> Reduction {
         Reduction {

@@ -71,8 +71,9 @@ pub(crate) fn structural_stiffness(
     Ok(structural)
 }
 
-/// Raises the stiffness of coordinates with springs whose stiffness grows and may be zero at zero motion, to that of
-/// the structure, so that κ moves the poles whatever kt is; where the structure itself is unstable, to some times that.
+/// Raises the stiffness of coordinates with springs whose stiffness grows and may be zero at zero motion. It becomes
+/// the stiffness of the structure, or some times that where the structure itself is unstable, so that κ moves the
+/// poles whatever kt is.
 pub(crate) fn raise_for_springs(
     model: &Model,
     assembled: &[AssembledDirection],
@@ -91,7 +92,7 @@ pub(crate) fn raise_for_springs(
     }
 }
 
-/// Stiffness of each coordinate that defines κ: that of its contacts unless they are near-rigid.
+/// Stiffness of each coordinate that defines κ: the stiffness of its contacts unless they are near-rigid.
 pub(crate) fn reference_stiffness(stiffness: &[f64], structural: &[f64]) -> Result<Vec<f64>> {
     let mut reference = try_copy(stiffness, "the contacts")?;
     for (r, &structural) in reference.iter_mut().zip(structural) {

@@ -19,7 +19,7 @@ pub(crate) struct AssembledDirection {
     pub coordinate: usize,
 }
 
-/// A contact and one of its directions.
+/// A contact and one of its directions, as a pair of indices.
 pub(crate) type ContactDirection = (usize, usize);
 
 /// Assigns the directions of active contacts to unique relative coordinates. Returns the directions, contact after

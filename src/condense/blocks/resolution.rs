@@ -6,7 +6,7 @@ use std::sync::Arc;
 /// A model condensed to a set of harmonics.
 #[derive(Clone, Debug)]
 pub struct Resolution {
-    /// The condensed model.
+    /// The model condensed to the harmonics of this resolution.
     pub condensed: Arc<Condensed>,
     /// Samples per period of the sampled laws; 0: exact events.
     pub samples: usize,

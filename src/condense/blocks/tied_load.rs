@@ -17,36 +17,36 @@ use std::sync::Arc;
 /// Kind: rounding.
 const TIED_LOAD_LEAST: f64 = 1e-100;
 
-/// A load that depends on the frequency.
+/// A normal load that depends on the frequency of the response.
 #[derive(Clone, Debug)]
 pub struct TiedLoad {
-    /// N₀ with the gap counted in.
+    /// Constant part N₀ of the load, the effect of a gap included.
     constant: f64,
-    /// c p²
+    /// c p², the part of the load that grows with ω², over ω².
     per_omega2: f64,
-    /// N_r
+    /// Reference load N_r, for which the law was made.
     reference: f64,
     /// The law of the load −N_r, where a load may be negative.
     open: Option<Arc<dyn Law>>,
-    /// Whether the motion scales with the load, too.
+    /// Whether the law sees the motion divided by r, too.
     scales_motion: bool,
     contact: Contact,
     description: SpeedLoad,
     p: f64,
 }
 
-/// A law with the factor of its load.
+/// A law together with the factor r of its load at a frequency.
 #[derive(Clone, Copy)]
 pub struct LoadedLaw<'a> {
-    /// f_r
+    /// The law f_r of the reference load.
     pub law: &'a dyn Law,
-    /// r
+    /// Factor r of the load over the reference load.
     pub factor: f64,
-    /// dr/dω
+    /// dr/dω, change of the factor r by the angular frequency.
     pub slope: f64,
-    /// Factor of the motion where that scales with the load: r.
+    /// Factor r of the motion where it scales with the load, else `None`.
     pub of_motion: Option<f64>,
-    /// Whether the law is evaluated as it is.
+    /// Whether the law is evaluated without scaling.
     pub is_plain: bool,
 }
 

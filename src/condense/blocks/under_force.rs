@@ -36,7 +36,7 @@ impl Condensed {
 }
 
 impl HarmonicBlock {
-    /// The block with more damping and without the artificial one.
+    /// A copy of the block with added damping and without the artificial damping of the mode.
     fn with_damping(&self, added: Option<&Csc>, by_mass: f64) -> Result<Self> {
         let n = self.reference.rows;
         let mut terms = Vec::new();

@@ -23,24 +23,25 @@ pub(crate) enum Variable {
 
 /// Memory for the factorisation of Z_κ, one harmonic at a time.
 pub struct DynamicStiffness {
-    /// Factors of all degrees of freedom, made when they are first needed.
+    /// Factors of Z_κ on all degrees of freedom, made when they are first needed.
     plain: Option<Plain>,
-    /// Those of a wheel that is tuned but for terms of low rank, and the harmonic, frequency and damping of which they are.
+    /// Factors of a wheel that is tuned but for terms of low rank; and the (harmonic, frequency, damping) for which
+    /// they were made.
     tuned: Option<Box<TunedFactors>>,
     tuned_at: Option<(usize, Complex64, f64)>,
     columns: usize,
     /// Largest entry of the matrix that was factorised.
     largest: f64,
-    /// b − Z x, and memory for its exact sum.
+    /// Residual b − Z x, and memory for its exact sum.
     remainder: Vec<Complex64>,
     sums: Vec<ComplexSum>,
     part: Vec<ComplexSum>,
 }
 
-/// Factors of all degrees of freedom.
+/// Factors of Z_κ on all degrees of freedom.
 struct Plain {
     factor: Factor,
-    /// Z_κ on each pattern, and the index of that of each harmonic.
+    /// Z_κ on each pattern of entries; and for each harmonic the index of its pattern.
     z: Vec<Csc>,
     patterns: Vec<usize>,
 }
@@ -155,12 +156,12 @@ impl DynamicStiffness {
         factored.map_err(|e| at_harmonic(e, block, omega.re))
     }
 
-    /// The factors of a wheel, if the current ones are such.
+    /// Factors of the whole wheel as a tuned one, if these are the current factors.
     pub(crate) fn tuned(&mut self) -> Option<&mut TunedFactors> {
         self.tuned.as_deref_mut().filter(|_| self.tuned_at.is_some())
     }
 
-    /// Solves with the current factors.
+    /// Solves Z X = B or Zᵀ X = B in place with the current factors.
     fn solve_columns(&mut self, b: &mut [Complex64], transposed: bool, interrupt: &Interrupt<'_>) -> Result<()> {
         match (&mut self.tuned, &mut self.plain) {
             (Some(tuned), _) if self.tuned_at.is_some() => tuned.solve(b, interrupt),
@@ -177,7 +178,7 @@ impl DynamicStiffness {
         entries * count <= CHEAP_TO_REFINE && columns.iter().any(|x| self.largest * size(x) > STIFF_FOR_FACTORS)
     }
 
-    /// Solves Z X = B (or Zᵀ X = B) in place with the current factors, those of the i-th harmonic at `omega`.
+    /// Solves Z X = B (or Zᵀ X = B) in place. The current factors must belong to the i-th harmonic at `omega`.
     ///
     /// # Errors
     /// As [`Self::factor`].
@@ -194,7 +195,7 @@ impl DynamicStiffness {
             .map_err(|e| at_harmonic(e, &condensed.blocks()[i], omega))
     }
 
-    /// Refines a solution x of Z x = b with the current factors, those of the i-th harmonic at (ω, D).
+    /// Refines a solution x of Z x = b with the current factors, which belong to the i-th harmonic at (ω, D).
     ///
     /// Near a resonance of Z_κ the rounding of a plain solution is many times that of the relative motions that
     /// follow from it, and a mode is always near one. The change of the relative motions in the first step shows
@@ -270,14 +271,14 @@ struct Combination {
     reference: f64,
     damping: Complex64,
     mass: Complex64,
-    /// Factor of the stiffness of the structure itself, for artificial damping of that type.
+    /// Factor of the stiffness matrix of the structure, for artificial damping of stiffness type.
     own: Complex64,
     /// Factors of p²K₁ and pG of a speed that is tied to the frequency.
     tied: [Complex64; 2],
 }
 
 impl Combination {
-    /// Z_κ
+    /// Z_κ at an angular frequency and a damping ratio, as a sum of the block's matrices.
     fn value(block: &HarmonicBlock, omega: Complex64, damping: f64) -> Self {
         let hw = block.number as f64 * omega;
         let artificial = Self::slope(block, omega, damping, Variable::Damping);
@@ -290,7 +291,7 @@ impl Combination {
         }
     }
 
-    /// ∂Z/∂ω or ∂Z/∂D
+    /// ∂Z/∂ω or ∂Z/∂D, as a sum of the block's matrices.
     fn slope(block: &HarmonicBlock, omega: Complex64, damping: f64, by: Variable) -> Self {
         let h = block.number as f64;
         let ih = Complex64::I * h;

@@ -4,13 +4,13 @@
 use crate::condense::Condensed;
 use crate::condense::blocks::exchange::{CREEP, Exchange};
 use crate::condense::blocks::relative_coordinates::AssembledDirection;
-use crate::condense::blocks::sweep::Sweep;
 use crate::condense::by_factors::flexibility::{Table, Workspace};
 use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::factors::lu::Lu;
 use crate::model::Model;
 use crate::options::Exchanged;
+use crate::options::Range;
 use num_complex::Complex64;
 use std::f64::consts::E;
 
@@ -28,8 +28,8 @@ const NOMINAL: f64 = 160.0;
 /// Kind: rounding.
 const UNMOVED: f64 = 1e-9;
 
-/// Selects the coordinates whose motions are exchanged: those of one near-rigid slider alone, which have no reference stiffness
-/// then.
+/// Selects the coordinates whose motions are exchanged: coordinates with a single near-rigid slider, which lose their
+/// reference stiffness.
 pub(crate) fn select_exchanged(
     model: &Model,
     which: Exchanged,
@@ -113,7 +113,7 @@ impl Condensed {
         self.exchanges[coordinate].is_some()
     }
 
-    /// Coordinates whose motions are exchanged; empty where none is.
+    /// For each coordinate, whether its motion is exchanged; empty where no motion is.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -125,8 +125,8 @@ impl Condensed {
         Ok(rates)
     }
 
-    /// Sets α of all exchanges, from the middle of a sweep, and the frequencies at which their sticks ring.
-    pub(crate) fn set_exchanges(&mut self, sweep: Sweep, interrupt: &Interrupt<'_>) -> Result<()> {
+    /// Sets α of all exchanges from the middle of a sweep, and the frequencies at which the stick stiffnesses ring.
+    pub(crate) fn set_exchanges(&mut self, sweep: Range, interrupt: &Interrupt<'_>) -> Result<()> {
         if !self.has_exchanges() {
             return Ok(());
         }
@@ -165,7 +165,7 @@ impl Condensed {
         Ok(())
     }
 
-    /// Turns a table of the i-th carried harmonic into that of the exchanged motions.
+    /// Turns the flexibility table of the i-th carried harmonic into the table for the exchanged motions.
     pub(crate) fn exchange(&self, i: usize, table: &mut Table) {
         let number = self.set.numbers()[i];
         let outputs = self.coordinates() + 1;
@@ -186,7 +186,7 @@ impl Condensed {
         }
     }
 
-    /// The packed relative motions of a point, of exchanged ones the motion itself.
+    /// Packed relative motions of the contacts at a point, computed from the exchanged motions where there are such.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -207,7 +207,8 @@ impl Condensed {
         Ok(found)
     }
 
-    /// A start for the exchanged motions, from packed relative ones whose forces are not known.
+    /// Turns packed relative motions into initial values of the exchanged ones, where the contact forces are not
+    /// known.
     pub fn exchange_start(&self, motion: &mut [f64]) {
         let m = self.set.packed_len();
         for (c, motion) in motion.chunks_exact_mut(m).enumerate() {

@@ -26,7 +26,7 @@ fn exchanged_motions_are_those_of_the_structure() {
         };
         let [plain, exchanged] = [Exchanged::None, Exchanged::NearRigid].map(|exchange| {
             let condensed = Condensed::new(&model, &options(exchange), (0.6, 0.9), &interrupt).unwrap();
-            let tables = FrequencyCache::new(&condensed, 0, (0.7, 0.7), &interrupt).unwrap();
+            let tables = FrequencyCache::new(&condensed, 0, (0.7, 0.7).into(), &interrupt).unwrap();
             (condensed, tables)
         });
         let ((plain, mut of_plain), (exchanged, mut of_exchanged)) = (plain, exchanged);
@@ -85,7 +85,7 @@ fn slopes_of_exchanged_tables_are_differences() {
     };
     let condensed = Condensed::new(&model, &options, (0.6, 0.9), &interrupt).unwrap();
     let at = |omega: f64| {
-        let mut tables = FrequencyCache::new(&condensed, 0, (0.6, 0.9), &interrupt).unwrap();
+        let mut tables = FrequencyCache::new(&condensed, 0, (0.6, 0.9).into(), &interrupt).unwrap();
         tables.tabulate(&condensed, (omega, true), &interrupt).unwrap();
         tables
     };

@@ -19,14 +19,14 @@ pub(crate) const CONTEXT: &str = "the contact flexibility";
 /// of freedom.
 #[derive(Clone, Debug)]
 pub struct Table {
-    /// H
+    /// H, the flexibility.
     pub value: Vec<Complex64>,
-    /// ∂H/∂ω
+    /// ∂H/∂ω, its slope.
     pub slope: Vec<Complex64>,
 }
 
 impl Table {
-    /// Memory for `coordinates` contacts.
+    /// Zeroed tables for `coordinates` contacts, excitation and response.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -34,7 +34,7 @@ impl Table {
         Self::of_size((coordinates + 1).saturating_mul(coordinates + 1))
     }
 
-    /// Memory for so many numbers.
+    /// Zeroed tables of `size` entries each.
     pub(crate) fn of_size(size: usize) -> Result<Self> {
         Ok(Self {
             value: try_vec(size, Complex64::ZERO, CONTEXT)?,
@@ -43,34 +43,35 @@ impl Table {
     }
 }
 
-/// Which derivatives of a table are made.
+/// The derivatives by the frequency that a table is made with.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Slopes {
-    /// None of them.
+    /// No derivatives.
     None,
-    /// Those of the response degree of freedom: the others are as many as contacts, for each contact.
+    /// Derivatives of the row of the response alone. The others number (coordinates)².
     OfResponse,
-    /// All of them.
+    /// Derivatives of the whole table.
     All,
 }
 
 /// Memory for the factorisation of Z_κ, one harmonic at a time.
 pub struct Workspace {
-    /// Made, as the columns, when a factorisation first needs it: where all tables are from modes none does.
+    /// Dynamic stiffness with its factors, made when a factorisation first needs it; `None` where all tables are from
+    /// modes.
     pub(crate) dynamic: Option<Box<DynamicStiffness>>,
     pub(crate) damping: f64,
-    /// Row of the response degree of freedom per harmonic, empty without one.
+    /// Per harmonic, the row that reads the response degree of freedom; empty without one.
     pub(crate) responses: Vec<MotionRow>,
-    /// Z⁻¹ B, ndof rows.
+    /// Z⁻¹ B, columns of `ndof` numbers.
     pub(crate) columns: Vec<Complex64>,
-    /// Z⁻ᵀ Rᵀ, ndof rows.
+    /// Z⁻ᵀ Rᵀ, columns of `ndof` numbers.
     pub(crate) rows: Vec<Complex64>,
     /// Z′ Z⁻¹ B, some columns at a time.
     pub(crate) products: Vec<Complex64>,
-    /// Entries of Z′, made when slopes are first wanted.
+    /// Entries of Z′, made when slopes are first requested.
     pub(crate) slope: Vec<Complex64>,
     pub(crate) load: Vec<Complex64>,
-    /// A motion and its change, made when they are first wanted.
+    /// Motion of all degrees of freedom and its change, made when they are first requested.
     pub(crate) motion: Vec<Complex64>,
     pub(crate) table: Table,
 }
@@ -151,7 +152,7 @@ impl Workspace {
         self.tabulate(condensed, (i, omega), slopes, interrupt)
     }
 
-    /// The same with those slopes that are wanted.
+    /// Evaluates H of the i-th carried harmonic at `omega` with the requested slopes.
     ///
     /// # Errors
     /// As [`Self::evaluate`].
@@ -189,8 +190,8 @@ impl Workspace {
         Ok(&self.table)
     }
 
-    /// Fills the table of a wheel with the factors of its waves, and keeps the column of the excitation alone; `false` where the current
-    /// factors are not such, or the contacts of its sectors differ.
+    /// Fills the table of a wheel from the factors of its waves, and keeps the column of the excitation alone.
+    /// Returns `false` where the current factors are not those of waves, or the contacts of the sectors differ.
     fn tabulate_wheel(
         &mut self,
         condensed: &Condensed,
@@ -214,7 +215,7 @@ impl Workspace {
         tabulated.map(|()| true)
     }
 
-    /// Removes the rounding of the columns where the stiffness of a penalty makes it large.
+    /// Improves the columns Z⁻¹ B by refinement where a stiff penalty makes their rounding large.
     fn refine_columns(
         &mut self,
         (condensed, i, omega): (&Condensed, usize, f64),
@@ -303,7 +304,7 @@ impl Workspace {
         self.adjoint_with_factors(condensed, i, omega, b, interrupt)
     }
 
-    /// The same with the current factors, those of the i-th harmonic at `omega`.
+    /// Replaces b by Z_κ⁻ᴴ b with the current factors, which must belong to the i-th harmonic at `omega`.
     ///
     /// # Errors
     /// As [`Self::evaluate`].
@@ -374,7 +375,8 @@ impl Workspace {
         made(&mut self.dynamic, condensed)?.refine(condensed, i, (omega, self.damping), &self.load, x, interrupt)
     }
 
-    /// The same with the digits of a factorisation.
+    /// Motion of all degrees of freedom as in `recover`, but without refinement: with the digits that the
+    /// factorisation has.
     pub(crate) fn solve_under(
         &mut self,
         condensed: &Condensed,
@@ -428,7 +430,7 @@ impl Workspace {
     }
 }
 
-/// The matrix of the current harmonic with its factors.
+/// The dynamic stiffness with its factors, made here if it does not exist yet.
 pub(crate) fn made<'a>(
     dynamic: &'a mut Option<Box<DynamicStiffness>>,
     condensed: &Condensed,
@@ -451,7 +453,7 @@ fn fill_load(block: &HarmonicBlock, k: usize, omega: f64, load: &mut [Complex64]
     }
 }
 
-/// R x, a column of the table.
+/// Fills a column of the table with R x, the motions that `rows` read from x.
 pub(crate) fn read<'r>(rows: impl Iterator<Item = &'r MotionRow>, x: &[Complex64], table: &mut [Complex64]) {
     for (value, row) in table.iter_mut().zip(rows) {
         *value = row.along(x);

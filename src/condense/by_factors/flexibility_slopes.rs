@@ -17,7 +17,7 @@ use num_complex::Complex64;
 const PRODUCTS: usize = 8;
 
 impl Workspace {
-    /// ∂H/∂ω with the current factors and columns.
+    /// Fills the whole table ∂H/∂ω with the current factors and columns.
     pub(crate) fn fill_all_slopes(
         &mut self,
         condensed: &Condensed,
@@ -113,7 +113,8 @@ impl Workspace {
         Ok(())
     }
 
-    /// The last row of ∂H/∂ω = −qᵀB with q = Z⁻ᵀ Z′ᵀ Z⁻ᵀ Rᵀ of the response, where no columns are at hand, with the current factors.
+    /// The last row of ∂H/∂ω = −qᵀB with q = Z⁻ᵀ Z′ᵀ Z⁻ᵀ Rᵀ of the response, with the current factors, where no
+    /// columns Z⁻¹ B are stored.
     pub(crate) fn fill_adjoint_slopes(
         &mut self,
         condensed: &Condensed,
@@ -179,8 +180,8 @@ impl Workspace {
         found
     }
 
-    /// The change R ∂x/∂ω of the motion x under the excitation and contact forces that do not change, `contact_force` being that of
-    /// [`Self::recover`], in the i-th carried harmonic at `omega`.
+    /// The change R ∂x/∂ω of the motion x under the excitation and constant contact forces, in the i-th carried
+    /// harmonic at `omega`. `contact_force` holds w = f − κ y as in [`Self::recover`].
     ///
     /// # Errors
     /// As [`Self::evaluate`].

@@ -45,17 +45,17 @@ const SMALL_SHARE: f64 = 1e-3;
 /// Kind: tuned; measured on: not recorded.
 const SAMPLED_COLUMNS: usize = 8;
 
-/// α, β and R = D S Dᴴ.
+/// Damping split as αM + βK + R, with R = D S Dᴴ of few directions D.
 pub(crate) struct FewDirections {
     pub proportional: (f64, f64),
-    /// The columns of D.
+    /// Directions: the columns of D, over the degrees of freedom.
     pub directions: Vec<SparseVector>,
-    /// S, column after column; `None` where it is 1.
+    /// S of R = D S Dᴴ, column after column; `None` where S is the identity.
     pub middle: Option<Vec<Complex64>>,
 }
 
-/// Damping C, all matrices on one pattern, as αM + βK and few directions; `None` where they are more. First α and β are
-/// those that were given, then those by which most entries vanish.
+/// Splits damping C, all matrices on one pattern, into αM + βK and few directions; `None` where it has many. The α
+/// and β tried first are the `given` ones, then those by which most entries of C − αM − βK vanish.
 pub(crate) fn few_directions(
     pattern: &Csc,
     matrices: [&[Complex64]; 3],
@@ -87,7 +87,7 @@ impl FewDirections {
         entries.chain(self.middle.iter().flatten()).all(|z| z.im == 0.0)
     }
 
-    /// VᴴRV for a basis V, from the rows DᴴV, direction after direction in each of `order` columns.
+    /// VᴴRV for a basis V, where `seen` holds the rows DᴴV, one number for each direction in each of `order` columns.
     pub fn on_basis(&self, seen: &[Complex64], order: usize, interrupt: &Interrupt<'_>) -> Result<Vec<Complex64>> {
         let count = self.directions.len();
         let mut weighted = try_copy(seen, CONTEXT)?;
@@ -101,7 +101,7 @@ impl FewDirections {
     }
 }
 
-/// c − αm − βk, or zero where that is rounding.
+/// One entry c − αm − βk of C − αM − βK, set to zero where it is rounding.
 fn remainder([m, k, c]: [Complex64; 3], (alpha, beta): (f64, f64)) -> Complex64 {
     let (of_mass, of_stiffness) = (alpha * m, beta * k);
     let r = c - of_mass - of_stiffness;
@@ -112,7 +112,8 @@ fn remainder([m, k, c]: [Complex64; 3], (alpha, beta): (f64, f64)) -> Complex64 
     }
 }
 
-/// The α and β, of those that fit the diagonal and the largest entry beside it in some column, by which most entries vanish.
+/// Finds α and β by which most entries of C − αM − βK vanish. Candidates are the pairs that fit a diagonal entry and
+/// the largest other entry of some column.
 fn sampled(pattern: &Csc, [m, k, c]: [&[Complex64]; 3], interrupt: &Interrupt<'_>) -> Result<Option<(f64, f64)>> {
     let n = pattern.cols;
     let step = n.div_ceil(SAMPLED_COLUMNS).max(1);
@@ -142,15 +143,15 @@ fn sampled(pattern: &Csc, [m, k, c]: [&[Complex64]; 3], interrupt: &Interrupt<'_
     Ok(best)
 }
 
-/// D and S.
+/// Directions D and middle matrix S of R = D S Dᴴ.
 type Product = (Vec<SparseVector>, Option<Vec<Complex64>>);
 
-/// R on the rows and columns in which it has entries.
+/// R = C − αM − βK on the rows and columns in which it has entries.
 struct Rest<'a> {
     pattern: &'a Csc,
     matrices: [&'a [Complex64]; 3],
     proportional: (f64, f64),
-    /// Degrees of freedom of these, and the place of each degree of freedom among them.
+    /// Degrees of freedom in which R has entries; and the position of each degree of freedom among them.
     touched: Vec<usize>,
     place: Vec<usize>,
 }
@@ -189,13 +190,13 @@ impl<'a> Rest<'a> {
             .any(|at| (alpha * m[at] + beta * k[at]).norm() > CANCELS * c[at].norm())
     }
 
-    /// Place of the diagonal entry of one among those touched.
+    /// Position in the pattern of the diagonal entry of the p-th degree of freedom in which R has entries.
     fn diagonal(&self, p: usize) -> Option<usize> {
         let (pattern, j) = (self.pattern, self.touched[p]);
         (pattern.col_ptr[j]..pattern.col_ptr[j + 1]).find(|&at| pattern.row_idx[at] == j)
     }
 
-    /// Rows and values of the column of a degree of freedom.
+    /// Rows and values of R in the column of a degree of freedom.
     fn of_degree(&self, j: usize) -> impl Iterator<Item = (usize, Complex64)> + '_ {
         let [m, k, c] = self.matrices;
         let entries = self.pattern.col_ptr[j]..self.pattern.col_ptr[j + 1];
@@ -204,12 +205,12 @@ impl<'a> Rest<'a> {
         all.filter(|(_, r)| *r != Complex64::ZERO)
     }
 
-    /// The same of one among those touched.
+    /// Rows and values of R in the column of the p-th degree of freedom in which R has entries.
     fn column(&self, p: usize) -> impl Iterator<Item = (usize, Complex64)> + '_ {
         self.of_degree(self.touched[p]).map(|(i, r)| (self.place[i], r))
     }
 
-    /// L, or unit vectors where R is not semidefinite; `None` where they are more than `most`.
+    /// The columns of L, or unit vectors where R is not semidefinite; `None` where there would be more than `most`.
     fn directions(&self, most: usize, interrupt: &Interrupt<'_>) -> Result<Option<Product>> {
         let mut found = Vec::new();
         if let Some(factor) = self.semidefinite_factor(most, interrupt)? {
@@ -238,15 +239,17 @@ impl<'a> Rest<'a> {
         Ok(Some((found, Some(middle))))
     }
 
-    /// Sum of the terms of the diagonal entry of one among those touched.
+    /// Sum of the moduli of the terms c, αm and βk of the diagonal entry of the p-th degree of freedom in which R has
+    /// entries.
     fn terms(&self, p: usize) -> f64 {
         let ([m, k, c], (alpha, beta)) = (self.matrices, self.proportional);
         self.diagonal(p)
             .map_or(0.0, |at| c[at].norm() + (alpha * m[at]).norm() + (beta * k[at]).norm())
     }
 
-    /// The columns of L; `None` where they are more than `most`, or R is not semidefinite. Pivots are compared over the own diagonal
-    /// entries, so that units do not matter, or over the share of their terms in which R has no digits.
+    /// The columns of L with R = L Lᴴ; `None` where there would be more than `most`, or R is not semidefinite. Pivots
+    /// are compared after division by their diagonal entries, so that units do not matter, or by the share of their
+    /// terms in which R has no digits.
     fn semidefinite_factor(&self, most: usize, interrupt: &Interrupt<'_>) -> Result<Option<Vec<Vec<Complex64>>>> {
         let n = self.touched.len();
         let (mut own, mut left) = (try_vec(n, 0.0_f64, CONTEXT)?, try_vec(n, 0.0_f64, CONTEXT)?);
@@ -289,7 +292,7 @@ impl<'a> Rest<'a> {
         Ok(self.is_product(&factor, &own, interrupt)?.then_some(factor))
     }
 
-    /// Whether R = L Lᴴ, by their products with a motion in the units of the diagonal entries.
+    /// Whether R = L Lᴴ, checked by the products of both with one motion, scaled by the diagonal entries.
     fn is_product(&self, factor: &[Vec<Complex64>], own: &[f64], interrupt: &Interrupt<'_>) -> Result<bool> {
         let n = self.touched.len();
         let motion = |j: usize| Complex64::cis(1.7 * (j as f64) + 0.3) / own[j].sqrt();

@@ -22,26 +22,28 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the flexibility from modes";
 
-/// T′ and ∂T′, rows × rows: contacts, response, springs.
+/// Table T′ from modes and its slope ∂T′, rows × rows: contacts, response, springs.
 pub struct Plain<'a> {
     pub value: &'a [Complex64],
     pub slope: &'a [Complex64],
     pub rows: usize,
 }
 
-/// Stiffness of B for one harmonic: of the coordinates, then of the springs, and 0 of the directions of other damping; and Im κ.
+/// Stiffness per row of B for one harmonic: the reference stiffness of the coordinates, then that of the springs, and
+/// 0 for directions of other damping; and Im κ per coordinate.
 pub struct Coefficients {
     coordinates: usize,
     stiffness: Vec<f64>,
     imaginary: Vec<f64>,
-    /// First row of B that is a direction of damping beside αM + βK.
+    /// Index of the first row of B that is a direction of damping beside αM + βK.
     first_damper: usize,
-    /// Whether the term is not 0: with damping by stiffness or beside αM + βK, or with imaginary κ.
+    /// Whether the low-rank term is not 0: with damping by stiffness or beside αM + βK, or with imaginary κ.
     pub counts: bool,
 }
 
 impl Coefficients {
-    /// Those of the i-th carried harmonic with its springs and number of dampers, which stiffness damps or not.
+    /// The coefficients of the i-th carried harmonic with its springs and number of dampers; `damped`: stiffness
+    /// damps the structure.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -71,17 +73,17 @@ impl Coefficients {
         })
     }
 
-    /// Rows of B.
+    /// Number of rows of B.
     pub fn len(&self) -> usize {
         self.stiffness.len()
     }
 
-    /// e of row b of B.
+    /// Coefficient e for row `b` of B.
     pub fn entry(&self, b: usize, at: Factors) -> Complex64 {
         self.d_entry(b, at) - Complex64::I * self.imaginary[b]
     }
 
-    /// ∂e of row b of B at the derivatives of the factors.
+    /// Derivative ∂e for row `b` of B, at the derivatives of the factors.
     pub fn d_entry(&self, b: usize, slope: Factors) -> Complex64 {
         if b < self.first_damper {
             slope.c * self.stiffness[b]
@@ -90,29 +92,29 @@ impl Coefficients {
         }
     }
 
-    /// Row of B number b in T′: the response lies between contacts and springs.
+    /// Row of T′ that belongs to row `b` of B: in T′ the response lies between contacts and springs.
     pub fn row_of(&self, b: usize) -> usize {
         if b < self.coordinates { b } else { b + 1 }
     }
 }
 
-/// Work space of the term, for one harmonic after the other.
+/// Work space of the low-rank term, used for one harmonic after the other.
 pub struct LowRank {
     coordinates: usize,
     lu: Lu<Complex64>,
     /// X and e X, one column for each contact and for the excitation.
     inner: Vec<Complex64>,
     force: Vec<Complex64>,
-    /// Made when all slopes are first wanted.
+    /// Memory for the slopes of all rows, made when they are first requested.
     slopes: Option<Box<AllSlopes>>,
 }
 
 /// Memory for the slopes of all rows.
 struct AllSlopes {
-    /// ∂X and ∂(e X)
+    /// ∂X and ∂(e X), slopes by the frequency.
     inner: Vec<Complex64>,
     force: Vec<Complex64>,
-    /// e X and ∂e X at all rows of T′, of which that of the response has no force, and products with them.
+    /// e X and ∂e X at all rows of T′ (zero in the row of the response), and products with them.
     forces: [Vec<Complex64>; 2],
     products: [Vec<Complex64>; 2],
 }
@@ -131,7 +133,7 @@ impl AllSlopes {
 }
 
 impl LowRank {
-    /// For terms with so many rows of B.
+    /// Work space for terms with `order` rows of B.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -146,7 +148,7 @@ impl LowRank {
         })
     }
 
-    /// Rows of B.
+    /// Number of rows of B.
     pub fn order(&self) -> usize {
         self.lu.order()
     }
@@ -166,7 +168,7 @@ impl LowRank {
         self.lu.solve(z);
     }
 
-    /// Adds the term to a table that holds T′, and to its slope if `slopes`.
+    /// Adds the low-rank term to a table that holds T′, and to the slope of the table if `slopes`.
     ///
     /// # Errors
     /// `Singular` where 1 − G′ e is; `StoppedByCaller`.
@@ -203,8 +205,8 @@ impl LowRank {
         Ok(())
     }
 
-    /// Adds the term to the column of the excitation alone, which holds that of T′; [`Self::force`] and [`Self::inner`] have no other one
-    /// then.
+    /// Adds the low-rank term to the column of the excitation alone, which holds that column of T′. Afterwards
+    /// [`Self::force`] and [`Self::inner`] hold this column alone.
     ///
     /// # Errors
     /// As [`Self::add`].
@@ -226,7 +228,7 @@ impl LowRank {
         Ok(())
     }
 
-    /// X and e X of the columns from one on.
+    /// Computes X and e X for the columns from `first` on.
     fn solve(
         &mut self,
         of: &Coefficients,
@@ -260,7 +262,7 @@ impl LowRank {
         Ok(())
     }
 
-    /// ∂X and ∂(e X), after [`Self::solve`].
+    /// Computes ∂X and ∂(e X), after [`Self::solve`].
     fn differentiate(
         &mut self,
         of: &Coefficients,
@@ -302,7 +304,7 @@ impl LowRank {
         Ok(())
     }
 
-    /// The rows of the contacts: those of X, or of its slope.
+    /// Copies the rows of the contacts from X, or from its slope, to the table.
     fn copy_rows(&self, x: &[Complex64], table: &mut [Complex64]) {
         let (order, outputs) = (self.order(), self.coordinates + 1);
         for (x, to) in x.chunks_exact(order).zip(table.chunks_exact_mut(outputs)) {
@@ -310,7 +312,7 @@ impl LowRank {
         }
     }
 
-    /// Adds T′_B x to the row of the response.
+    /// Adds T′_B x, with the columns T′_B of T′ that belong to B, to the row of the response.
     fn add_response(
         &self,
         of: &Coefficients,

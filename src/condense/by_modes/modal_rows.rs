@@ -13,13 +13,10 @@
 use crate::condense::by_modes::sum_terms::{Denominator, Source};
 use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, try_push, try_vec};
+use crate::linalg::libraries::{Accum, Arch, MatMut, MatRef, Par, Simd, WithSimd, cast_slice, matmul};
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::few_motions::reduced_wave::MotionRow;
-use faer::linalg::matmul::matmul;
-use faer::{Accum, MatMut, MatRef, Par};
 use num_complex::Complex64;
-use pulp::bytemuck::cast_slice;
-use pulp::{Arch, Simd, WithSimd};
 use std::sync::{Arc, OnceLock};
 
 const CONTEXT: &str = "the flexibility from modes";
@@ -60,27 +57,28 @@ const MODAL_ROWS_AT_ONCE: usize = 24;
 /// Kind: block.
 const MODAL_ROWS_ENTRIES: usize = 256;
 
-/// The rows of a wave in its modes, or in its poles.
+/// Rows of contacts, response, springs and dampers of one wave, multiplied with its modes or poles.
 pub struct ModalRows {
     source: Source,
-    /// Z_κ at rest and M of the block for which they were made.
+    /// Z_κ at zero frequency and M of the block for which these rows were made.
     matrices: (Arc<Csc>, Arc<Vec<Complex64>>),
-    /// Motion of the next sector over that of this one: waves of real matrices may have one source and different rows.
+    /// Motion of the next sector over that of this sector. Waves of real matrices may share their modes and differ in
+    /// this factor.
     next: Complex64,
     coordinates: usize,
-    /// Rows of contacts, response, springs and dampers.
+    /// Number of rows: contacts, response, springs and dampers.
     rows: usize,
-    /// Whether it has rows of springs.
+    /// Whether some of the rows belong to springs.
     has_springs: bool,
-    /// Φ seen by them, mode after mode, the stiffest first.
+    /// Row products with Φ, mode after mode, the stiffest mode first.
     left: Vec<Complex64>,
-    /// The adjoint shapes seen by them; none where these are the shapes.
+    /// Row products with the adjoint shapes; empty where these equal the shapes.
     adjoint: Vec<Complex64>,
-    /// S_j for each number of modes that are not in it.
+    /// Sums S_j of the series over stiff modes, for each number of soft modes that stay outside of it.
     stiff: [[OnceLock<Vec<Complex64>>; MOST_TERMS]; SOFT.len()],
 }
 
-/// Terms of a series for a sum within a relative tolerance; none for 0: all modes are summed.
+/// Number of terms of a series that meets a relative tolerance; 0 for a tolerance of 0: all modes are then summed.
 pub fn terms_within(tolerance: f64) -> usize {
     if tolerance > 0.0 {
         (((MODAL_ROWS_SHARE * tolerance).ln() / STIFF.ln()).ceil() as usize).min(MOST_TERMS)
@@ -90,7 +88,7 @@ pub fn terms_within(tolerance: f64) -> usize {
 }
 
 impl ModalRows {
-    /// The rows of the i-th carried harmonic with degree of freedom `response` in these terms.
+    /// The rows of the i-th carried harmonic, with degree of freedom `response`, in the modes or poles of `source`.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -101,7 +99,8 @@ impl ModalRows {
         Self::with_rows((condensed, i), &observed, source, has_springs)
     }
 
-    /// The rows of the i-th carried harmonic with this row of the response, and with those of the springs or without them.
+    /// The rows of the i-th carried harmonic with the row `observed` for the response, and with the rows of the
+    /// springs or without.
     pub fn with_rows(
         (condensed, i): (&Condensed, usize),
         observed: &MotionRow,
@@ -146,7 +145,7 @@ impl ModalRows {
         })
     }
 
-    /// The rows of these terms among those known, or new ones, which are then known.
+    /// Finds the rows for a source among the `known` ones, or makes them and adds them to `known`.
     pub fn shared(at: (&Condensed, usize, usize), source: Source, known: &mut Vec<Arc<Self>>) -> Result<Arc<Self>> {
         if let Some(rows) = known.iter().find(|rows| rows.are_of(&at.0.blocks()[at.1], &source)) {
             return Ok(Arc::clone(rows));
@@ -156,12 +155,12 @@ impl ModalRows {
         Ok(rows)
     }
 
-    /// Whether these are the rows of a block in these terms.
+    /// Whether these rows belong to a block and a source of modes or poles.
     pub fn are_of(&self, block: &HarmonicBlock, source: &Source) -> bool {
         self.source.is(source) && self.next == block.next
     }
 
-    /// The terms.
+    /// Modes or poles in which the rows are expressed.
     pub fn source(&self) -> &Source {
         &self.source
     }
@@ -192,27 +191,27 @@ impl ModalRows {
         all_dampers(&self.source)
     }
 
-    /// Relative motions, whose rows come first, then that of the response.
+    /// Number of relative motions. Their rows come first, then the row of the response.
     pub fn coordinates(&self) -> usize {
         self.coordinates
     }
 
-    /// Number of rows.
+    /// Number of rows: relative motions, response, springs and dampers.
     pub fn count(&self) -> usize {
         self.rows
     }
 
-    /// Number of terms.
+    /// Number of modes or poles.
     pub fn terms(&self) -> usize {
         self.source.len()
     }
 
-    /// L, mode after mode.
+    /// Row products L with the shapes, mode after mode.
     pub fn left(&self) -> &[Complex64] {
         &self.left
     }
 
-    /// The adjoint shape of each term along a force.
+    /// Product of a force with the adjoint shape of each mode or pole.
     pub fn forced(&self, force: &[Complex64]) -> Result<Vec<Complex64>> {
         let mut found = Vec::new();
         if force.iter().any(|f| *f != Complex64::ZERO) {
@@ -223,7 +222,7 @@ impl ModalRows {
         Ok(found)
     }
 
-    /// The rows of the adjoint shapes, mode after mode.
+    /// Row products with the adjoint shapes, mode after mode.
     pub(crate) fn adjoint(&self) -> &[Complex64] {
         if self.adjoint.is_empty() {
             &self.left
@@ -232,8 +231,8 @@ impl ModalRows {
         }
     }
 
-    /// out ← the sum over the stiff modes by series of so many terms, 0 where all modes are to be summed, and slope ← its
-    /// derivative, if there is memory for one; returns the first mode that is not in it.
+    /// out ← the sum over the stiff modes by a series of `terms` terms (0: all modes are summed one by one), and
+    /// slope ← its derivative if there is memory for it. Returns the index of the first mode outside the series.
     pub fn add_stiff(
         &self,
         at: Denominator,
@@ -293,7 +292,7 @@ impl ModalRows {
         Ok(first)
     }
 
-    /// S_j of the modes before one.
+    /// S_j, the coefficient of a power in the series over the modes before `end`.
     fn stiff_sum(&self, end: usize, power: usize) -> Result<Vec<Complex64>> {
         let rows = self.rows;
         let zeros = |len| try_vec(len, Complex64::ZERO, CONTEXT);
@@ -338,7 +337,7 @@ impl ModalRows {
         Ok(sum)
     }
 
-    /// out ← out + Σ f l rᴴ over the modes from one on that have a factor f; `weighted` is memory for f rᴴ.
+    /// out ← out + Σ f l rᴴ over the modes from index `from` on, one factor f each; `weighted` is memory for f rᴴ.
     pub fn add(&self, from: usize, factors: &[Complex64], weighted: &mut [Complex64], out: &mut [Complex64]) {
         let rows = self.rows;
         let factors = &factors[from..];
@@ -376,7 +375,7 @@ impl ModalRows {
     }
 }
 
-/// out ← out + Σ f S
+/// out ← out + Σ f S, the sum of a series with the factors f and the matrices S.
 struct Series<'a> {
     sums: &'a [&'a [Complex64]],
     factors: &'a [Complex64],
@@ -407,7 +406,7 @@ impl WithSimd for Series<'_> {
     }
 }
 
-/// Springs that modes leave out.
+/// Springs that the modes leave out; each has a row of its own.
 fn all_springs(source: &Source) -> &[(MotionRow, f64)] {
     match source {
         Source::Modes(modes) => &modes.springs,
@@ -415,7 +414,7 @@ fn all_springs(source: &Source) -> &[(MotionRow, f64)] {
     }
 }
 
-/// Dampers that modes leave out.
+/// Directions of damping that the modes leave out; each has a row of its own.
 fn all_dampers(source: &Source) -> &[MotionRow] {
     match source {
         Source::Modes(modes) => &modes.dampers,

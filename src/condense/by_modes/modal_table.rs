@@ -22,47 +22,48 @@ const CONTEXT: &str = "the flexibility from modes";
 /// Kind: tuned; measured on: not recorded.
 const EXACT_SERIES: usize = 8;
 
-/// A harmonic with the modes of its wave.
+/// Flexibility table of one harmonic from the modes or poles of its wave.
 pub struct ModalTable {
     pub(crate) rows: Arc<ModalRows>,
     number: f64,
-    /// Terms of the series over stiff modes; none where all are summed.
+    /// Number of terms of the series over stiff modes; 0 where all modes are summed one by one.
     terms: usize,
     pub(crate) coefficients: Coefficients,
-    /// The excitation seen by the adjoint shapes, and the one that grows with ω² over ω²; none where there is none.
+    /// Product of the excitation with the adjoint shapes, and that of the forces which grow with ω², over ω²; empty
+    /// without such forces.
     force: Vec<Complex64>,
     unbalance: Vec<Complex64>,
-    /// The sums written out: one contact without springs.
+    /// Closed sums for one contact without springs, where the harmonic has no more; else `None`.
     single: Option<SingleContact>,
 }
 
-/// The numbers of a table of one contact without springs.
+/// The data of a table of one contact without springs.
 pub struct SinglePart<'a> {
     pub contact: &'a SingleContact,
     pub coefficients: &'a Coefficients,
     pub number: f64,
-    /// α and β
+    /// Factors α and β of proportional damping αM + βK.
     pub proportional: (f64, f64),
-    /// η
+    /// Loss factor η of the structure.
     pub loss_factor: f64,
 }
 
-/// Work space of the tables of one structure, for one after the other; made when the first needs it.
+/// Work space for the tables of one structure, one after the other; made when a table first needs it.
 #[derive(Default)]
 pub struct ModalWork(pub(crate) Option<Box<Work>>);
 
 pub(crate) struct Work {
-    /// 1/d, and −∂d/d².
+    /// 1/d and −∂d/d², one number per mode.
     pub inverse: Vec<Complex64>,
     slopes: Vec<Complex64>,
-    /// Rᴴ times one of them.
+    /// Memory for Rᴴ weighted by 1/d or by −∂d/d².
     weighted: Vec<Complex64>,
-    /// T′, rows × rows.
+    /// Table T′ from modes, rows × rows.
     pub plain: Vec<Complex64>,
-    /// ∂T′, made when all slopes are first wanted.
+    /// Slope ∂T′, made when all slopes are first requested.
     d_plain: Vec<Complex64>,
     pub low_rank: LowRank,
-    /// Numbers of all modes, of all rows, and of the rows of B.
+    /// Memory: one number per mode, per row, and per row of B.
     pub of_modes: [Vec<Complex64>; 2],
     pub of_rows: [Vec<Complex64>; 2],
     pub of_springs: Vec<Complex64>,
@@ -95,14 +96,15 @@ impl Work {
         })
     }
 
-    /// Waves may differ in the number of their terms.
+    /// Whether this work space fits a table: waves may differ in the number of their modes.
     fn fits(&self, table: &ModalTable) -> bool {
         self.inverse.len() == table.rows.terms() && self.low_rank.order() == table.coefficients.len()
     }
 }
 
 impl ModalTable {
-    /// The table of the i-th carried harmonic from the rows of its wave, within a relative tolerance, 0: as exact as numbers are.
+    /// The table of the i-th carried harmonic from the rows of its wave, within a relative tolerance; 0: as exact as
+    /// rounding allows.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -133,7 +135,7 @@ impl ModalTable {
         })
     }
 
-    /// Its numbers where it is one of a single contact without springs.
+    /// The data of the table where the harmonic has a single contact without springs, else `None`.
     pub(crate) fn single(&self) -> Option<SinglePart<'_>> {
         let Source::Modes(modes) = self.rows.source() else {
             return None;
@@ -147,13 +149,13 @@ impl ModalTable {
         })
     }
 
-    /// The rows of its wave.
+    /// Rows of the wave in its modes or poles.
     pub fn rows(&self) -> Arc<ModalRows> {
         Arc::clone(&self.rows)
     }
 
-    /// Evaluates H at `omega`, and ∂H/∂ω if `slopes`, without which [`Self::slope_along`] has it along a motion; `false` so near a resonance of the structure with stuck contacts that
-    /// digits would be lost.
+    /// Evaluates H at `omega`, and ∂H/∂ω if `slopes`; without these, [`Self::slope_along`] gives the derivative along
+    /// a motion. Returns `false` so near a resonance of the structure with stuck contacts that digits would be lost.
     ///
     /// # Errors
     /// `Singular` at an undamped resonance; `StoppedByCaller`.
@@ -201,7 +203,8 @@ impl ModalTable {
         Ok(is_clear)
     }
 
-    /// The column of the excitation of H and of ∂H/∂ω at `omega`, the others being zero; `false` as [`Self::evaluate`] says.
+    /// The column of the excitation in H and in ∂H/∂ω at `omega`; the others become zero. Returns `false` as
+    /// [`Self::evaluate`] does.
     ///
     /// # Errors
     /// As [`Self::evaluate`].
@@ -248,7 +251,7 @@ impl ModalTable {
         self.rows.source().denominator(self.number, omega)
     }
 
-    /// T′, and ∂T′ if `slopes`.
+    /// Computes T′, and ∂T′ if `slopes`.
     fn sum(&self, work: &mut Work, (at, omega): (Denominator, f64), slopes: bool) -> Result<()> {
         if slopes && work.d_plain.is_empty() {
             work.d_plain = try_vec(work.plain.len(), Complex64::ZERO, CONTEXT)?;
@@ -270,7 +273,7 @@ impl ModalTable {
         [part(&self.force) + unbalance * (omega * omega), 2.0 * omega * unbalance]
     }
 
-    /// The column of the excitation, from all modes.
+    /// Computes the column of the excitation by a sum over all modes.
     fn excite(&self, work: &mut Work, omega: f64, slopes: bool) {
         let (rows, from) = (self.rows.count(), self.rows.coordinates() * self.rows.count());
         let value = &mut work.plain[from..from + rows];
@@ -299,7 +302,7 @@ impl ModalTable {
         complex_columns::multiply(self.rows.left(), rows, weights, slope, &mut memory[..rows]);
     }
 
-    /// The table from T′ with the low-rank term.
+    /// Completes the table: T′ plus the low-rank term.
     fn complete(
         &self,
         work: &mut Work,

@@ -73,7 +73,7 @@ fn tables_from_modes_are_those_by_factorisation() {
     }
 }
 
-/// Rows that harmonics share are those of the direction in which their wave travels.
+/// Rows that harmonics share belong to the direction in which the wave of these harmonics travels.
 #[test]
 fn shared_rows_of_waves_with_the_same_real_matrices_are_their_own() {
     for (damping, loss_factor) in DAMPED {

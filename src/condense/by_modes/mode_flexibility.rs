@@ -16,18 +16,18 @@ use crate::model::matrices::sector_motion::MOTION_TERMS;
 use num_complex::Complex64;
 use std::sync::Arc;
 
-/// x and its derivatives in one harmonic.
+/// Motion x of one harmonic and its derivatives.
 pub struct ModeFlexibility {
     coordinates: usize,
     reference_dof: usize,
     /// Largest relative deviation of sums from a factorisation.
     deviation: f64,
-    /// Per harmonic its sums, where they are used, with the number of its wave.
+    /// Per harmonic the sums over modes, where they are used, with the index of its wave.
     sums: Vec<Option<(ModeSums, usize)>>,
-    /// Whether the sums of a wave agreed with a factorisation.
+    /// Per wave, whether its sums agreed with a factorisation.
     agree: Vec<bool>,
     work: Option<SumWork>,
-    /// Made when a factorisation first needs it.
+    /// Solution by factorisation, made when it is first needed.
     direct: Option<Box<Direct>>,
     x: Vec<Complex64>,
     /// W Z⁻¹ Wᴴ, column after column.
@@ -35,17 +35,17 @@ pub struct ModeFlexibility {
     /// Relative motions of the contacts: of x, ∂x/∂ω and ∂x/∂D.
     relative: Vec<Complex64>,
     gauge: GaugeProducts,
-    /// Harmonic solved last by sums.
+    /// Index of the harmonic solved last by sums; `None` if it was by factorisation.
     by_sums: Option<usize>,
 }
 
-/// The solution by factorisation.
+/// Solution of one harmonic by factorisation.
 struct Direct {
     dynamic: DynamicStiffness,
     /// Z⁻¹ Wᴴ, column after column.
     columns: Vec<Complex64>,
     x: Vec<Complex64>,
-    /// ∂x/∂ω and ∂x/∂D
+    /// ∂x/∂ω and ∂x/∂D, on all degrees of freedom.
     rates: [Vec<Complex64>; 2],
     load: Vec<Complex64>,
 }
@@ -64,8 +64,8 @@ const BESIDE: f64 = 64.0 * f64::EPSILON;
 const CONTEXT: &str = "the flexibility of a mode";
 
 impl ModeFlexibility {
-    /// Memory for a condensed model whose normalisation reads an independent degree of freedom; the flexibility within a relative
-    /// tolerance, 0: as exact as numbers are.
+    /// Memory for a condensed model whose normalisation reads the independent degree of freedom `reference_dof`, with
+    /// the flexibility within a relative tolerance; 0: as exact as rounding allows.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -158,7 +158,7 @@ impl ModeFlexibility {
         Ok(())
     }
 
-    /// Whether the solution by sums is that by factorisation, as far as this has digits.
+    /// Whether the solution by sums equals the one by factorisation, as far as the latter has digits.
     fn agrees(
         &mut self,
         (condensed, i): (&Condensed, usize),
@@ -198,7 +198,8 @@ impl ModeFlexibility {
         Ok(true)
     }
 
-    /// Products of the normalisation with the solution of the fundamental, solved last; `weighted` is B x.
+    /// Computes the products of the normalisation with the solution of the fundamental, which was solved last;
+    /// `weighted` is B x.
     pub fn fix_gauge(&mut self, weighted: &[Complex64]) {
         if let (Some(i), Some(work)) = (self.by_sums, &mut self.work)
             && let Some((sums, _)) = &self.sums[i]
@@ -237,12 +238,12 @@ impl ModeFlexibility {
         &self.value
     }
 
-    /// x of all degrees of freedom; of the modes where [`Self::is_of_modes`].
+    /// Motion x of the harmonic solved last: on all degrees of freedom, or in the modes where [`Self::is_of_modes`].
     pub fn x(&self) -> &[Complex64] {
         &self.x
     }
 
-    /// Whether the harmonic solved last has its motion in the modes of its wave.
+    /// Whether the motion of the harmonic solved last is given in the modes of its wave.
     pub fn is_of_modes(&self) -> bool {
         let sums = self.by_sums.and_then(|i| self.sums[i].as_ref());
         sums.is_some_and(|(sums, _)| !sums.is_fundamental())
@@ -259,7 +260,7 @@ impl ModeFlexibility {
         self.x.iter().fold(0.0_f64, |m, z| m.max(z.norm_sqr())).sqrt()
     }
 
-    /// The motion of all degrees of freedom in the i-th carried harmonic from that of the modes.
+    /// Turns a motion of the i-th carried harmonic in the modes of its wave into one of all degrees of freedom.
     pub fn expand(&self, i: usize, of_modes: &[Complex64], x: &mut [Complex64], memory: &mut [Complex64]) {
         if let Some((sums, _)) = &self.sums[i] {
             sums.expand(of_modes, x, memory);
@@ -331,7 +332,8 @@ impl Direct {
         Ok(())
     }
 
-    /// Improves a derivative of the motion until only the rounding of the matrices is left: by frequency (1), by damping ratio (2).
+    /// Refines a derivative of the motion, by the frequency (`which` = 1) or the damping ratio (2), until only the
+    /// rounding of the matrices is left.
     fn refine(
         &mut self,
         (condensed, i): (&Condensed, usize),
@@ -351,7 +353,7 @@ impl Direct {
         self.dynamic.refine(condensed, i, at, &self.load, rate, interrupt)
     }
 
-    /// The same for a column.
+    /// Refines the column Z⁻¹ Wᴴ of a coordinate until only the rounding of the matrices is left.
     fn refine_column(
         &mut self,
         (condensed, i): (&Condensed, usize),
@@ -368,7 +370,7 @@ impl Direct {
         self.dynamic.refine(condensed, i, at, &self.load, column, interrupt)
     }
 
-    /// The relative motions of the contacts.
+    /// Reads the relative motions of the contacts from the motions on all degrees of freedom.
     fn read(&self, (condensed, i): (&Condensed, usize), value: &mut [Complex64], relative: &mut [Complex64]) {
         let rows = &condensed.blocks()[i].rows;
         let motions = |to: &mut [Complex64], x: &[Complex64]| {
@@ -395,7 +397,7 @@ fn made<'a>(direct: &'a mut Option<Box<Direct>>, condensed: &Condensed) -> Resul
     Ok(direct.insert(known))
 }
 
-/// Relative deviation of one vector from another.
+/// Relative deviation of vector `a` from vector `b`.
 fn off(a: &[Complex64], b: &[Complex64]) -> f64 {
     let off: f64 = a.iter().zip(b).map(|(a, b)| (a - b).norm_sqr()).sum();
     let size: f64 = b.iter().map(Complex64::norm_sqr).sum();

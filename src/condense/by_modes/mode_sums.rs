@@ -33,54 +33,56 @@ const CONTEXT: &str = "the flexibility of a mode";
 /// Kind: tuned; measured on: not recorded.
 const SERIES_FROM: usize = 8;
 
-/// A harmonic of a nonlinear mode with the modes of its wave.
+/// Sums over the modes of its wave for one harmonic of a nonlinear mode.
 pub(crate) struct ModeSums {
     rows: Arc<ModalRows>,
     modes: Arc<WaveModes>,
     number: f64,
     is_mass_type: bool,
     coefficients: Coefficients,
-    /// Terms of the series over stiff modes.
+    /// Number of terms of the series over stiff modes.
     terms: usize,
     /// Largest length of a row of Φ.
     longest_row: f64,
 }
 
-/// Products of the normalisation of a nonlinear mode with its fundamental: of (B x)ᴴ, and the motion of the reference degree of freedom.
+/// Products that the normalisation of a nonlinear mode needs from its fundamental: (B x)ᴴ times a motion, and the
+/// same motion at the reference degree of freedom.
 #[derive(Default)]
 pub(crate) struct GaugeProducts {
-    /// With the motion Z⁻¹ Wᴴ under a unit force of each contact.
+    /// Products for the motion Z⁻¹ Wᴴ under a unit force at each contact.
     pub of_columns: Vec<[Complex64; 2]>,
-    /// With the derivatives of the motion by frequency and by damping ratio.
+    /// Products for the derivatives of the motion by frequency and by damping ratio.
     pub of_rates: [[Complex64; 2]; 2],
 }
 
-/// Memory of the sums, for one harmonic after the other.
+/// Memory of the sums, used for one harmonic after the other.
 pub(crate) struct SumWork {
     at: Denominator,
-    /// 1/d
+    /// 1/d, one number per mode.
     inverse: Vec<Complex64>,
     weighted: Vec<Complex64>,
-    /// T′, rows × rows, and the flexibility with the row of the reference degree of freedom.
+    /// T′, rows × rows; and the flexibility, with the row of the reference degree of freedom.
     plain: Vec<Complex64>,
     table: Table,
     low_rank: LowRank,
-    /// ξ, and its derivatives by frequency and damping ratio.
+    /// Modal motion ξ, and its derivatives by frequency and damping ratio.
     motion: Vec<Complex64>,
     rates: [Vec<Complex64>; 2],
-    /// One number per mode; a force and a motion of each row, and memory for a product.
+    /// Memory: one number per mode; a force and a motion of each row; a product.
     of_modes: Vec<Complex64>,
     force: Vec<Complex64>,
     seen: Vec<Complex64>,
     memory: Vec<Complex64>,
-    /// A motion of each row of B.
+    /// Motion of each row of B.
     inner: Vec<Complex64>,
-    /// Memory for a product with all degrees of freedom, and for a force turned by a quarter.
+    /// Memory for a product on all degrees of freedom, and for a force shifted by a quarter period.
     whole: Vec<Complex64>,
     turned: Vec<Complex64>,
 }
 
-/// a, b and iν of the directions of other damping, or their derivatives by one variable.
+/// Coefficients a and b of the denominators and iν for directions of other damping, or the derivatives of these by
+/// one variable.
 #[derive(Clone, Copy)]
 struct Pair {
     a: Complex64,
@@ -89,15 +91,17 @@ struct Pair {
 }
 
 impl SumWork {
-    /// The flexibility of the contacts, column after column with one more row, that of the reference degree of freedom.
+    /// Flexibility of the contacts, column after column; each column ends with the motion of the reference degree of
+    /// freedom.
     pub fn table(&self) -> &[Complex64] {
         &self.table.value
     }
 }
 
 impl ModeSums {
-    /// The i-th carried harmonic with the rows of its wave, its flexibility within a relative tolerance, 0: as exact as numbers are; `None`
-    /// where these belong to poles, which would follow the damping ratio.
+    /// Sums for the i-th carried harmonic with the rows of its wave and the flexibility within a relative tolerance;
+    /// 0: as exact as rounding allows. `None` where the rows belong to poles, which would depend on the damping
+    /// ratio.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -124,12 +128,12 @@ impl ModeSums {
         }))
     }
 
-    /// Whether the artificial damping of a block makes its springs count, whatever damps the structure.
+    /// Whether the artificial damping of a block acts on its springs, whatever damps the structure.
     pub fn damps_springs(artificial: &Artificial) -> bool {
         matches!(artificial, Artificial::Stiffness(_))
     }
 
-    /// Memory for it.
+    /// Makes memory for these sums.
     pub fn work(&self) -> Result<SumWork> {
         let (rows, n, coordinates) = (self.rows.count(), self.rows.terms(), self.rows.coordinates());
         let zeros = |len| try_vec(len, Complex64::ZERO, CONTEXT);
@@ -152,20 +156,20 @@ impl ModeSums {
         })
     }
 
-    /// Whether such memory serves it.
+    /// Whether a memory has the size that these sums need.
     pub fn fits(&self, work: &SumWork) -> bool {
         work.inverse.len() == self.rows.terms() && work.seen.len() == self.rows.count()
     }
 
-    /// Whether the normalisation reads this harmonic.
+    /// Whether this harmonic is the fundamental, which the normalisation reads.
     pub fn is_fundamental(&self) -> bool {
         self.number < 1.5
     }
 
-    /// Solves at frequency `omega` and damping ratio `damping` under the forces w; `false` so near a resonance of the
-    /// structure with its reference stiffness that digits would be lost. Writes the motion, of all degrees of freedom in the fundamental
-    /// and of the modes in other harmonics, and the relative motions of the contacts: of it and of its derivatives by frequency and
-    /// damping ratio.
+    /// Solves at frequency `omega` and damping ratio `damping` under the forces w. Writes the motion, of all degrees
+    /// of freedom in the fundamental and of the modes in other harmonics, and the relative motions of the contacts
+    /// with their derivatives by frequency and damping ratio. Returns `false` so near a resonance of the structure
+    /// with its reference stiffness that digits would be lost.
     ///
     /// # Errors
     /// `Singular`, `OutOfMemory`, `StoppedByCaller`.
@@ -212,17 +216,17 @@ impl ModeSums {
         Ok(true)
     }
 
-    /// The motion of all degrees of freedom from that of the modes.
+    /// Turns a motion of the modes into one of all degrees of freedom.
     pub fn expand(&self, of_modes: &[Complex64], x: &mut [Complex64], memory: &mut [Complex64]) {
         complex_columns::multiply(&self.modes.vectors, x.len(), of_modes, x, memory);
     }
 
-    /// Bound of the largest motion of a degree of freedom.
+    /// Upper bound of the largest motion of a degree of freedom, from a motion of the modes.
     pub fn bound(&self, of_modes: &[Complex64]) -> f64 {
         self.longest_row * of_modes.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt()
     }
 
-    /// Products of the normalisation with the solution of [`Self::solve`]: B x, and the row of the reference degree of freedom.
+    /// Computes the products of the normalisation with the solution of [`Self::solve`], where `weighted` is B x.
     pub fn gauge(&self, work: &mut SumWork, weighted: &[Complex64], out: &mut GaugeProducts) {
         let (rows, coordinates) = (self.rows.count(), self.rows.coordinates());
         multiply_adjoint(&self.modes.vectors, weighted, &mut work.whole, &mut work.of_modes);
@@ -253,7 +257,7 @@ impl ModeSums {
         }
     }
 
-    /// a, b and iν, and their derivatives by ω and D.
+    /// Coefficients a, b and iν of the denominators, then their derivatives by ω and by D.
     fn pairs(&self, omega: f64, damping: f64) -> [Pair; 3] {
         let (h, (alpha, beta)) = (self.number, self.modes.proportional);
         let nu = h * omega;
@@ -278,8 +282,8 @@ impl ModeSums {
         ]
     }
 
-    /// The same for one contact without springs in closed form, the inner loop of every mode with one contact: with q its motion in each
-    /// mode, S = Σ |q|²/d and p = 1/(1 − S e) the flexibility is G = S p, and
+    /// Solves for one contact without springs in closed form, the inner loop of every mode with one contact. With q
+    /// its motion in each mode, S = Σ |q|²/d and p = 1/(1 − S e), the flexibility is G = S p, and
     ///
     /// > ξ = −p q*/d w,  ∂S = −Σ |q|² ∂d/d²,  ∂p = p² (∂S e + S ∂e),  ∂G = p² (∂S + S² ∂e).
     fn solve_single(&self, work: &mut SumWork, [at, rates @ ..]: [Pair; 3], w: Complex64, relative: &mut [Complex64]) {
@@ -321,7 +325,7 @@ impl ModeSums {
         }
     }
 
-    /// T′ and, with the low-rank term, the flexibility.
+    /// Computes T′ and, with the low-rank term, the flexibility.
     fn flexibility(&self, work: &mut SumWork, interrupt: &Interrupt<'_>) -> Result<()> {
         let (rows, outputs) = (self.rows.count(), self.rows.coordinates() + 1);
         let soft = self.rows.add_stiff(work.at, self.terms, &mut work.plain, None)?;
@@ -344,7 +348,7 @@ impl ModeSums {
             .add(&self.coefficients, &plain, (at, false), &mut work.table, interrupt)
     }
 
-    /// ξ, and in `seen` E ξ.
+    /// Computes the modal motion ξ, and E ξ, the motions of the rows.
     fn motion(&self, work: &mut SumWork, w: &[Complex64]) {
         let (order, outputs) = (self.coefficients.len(), w.len() + 1);
         work.force.fill(Complex64::ZERO);
@@ -372,7 +376,7 @@ impl ModeSums {
         }
     }
 
-    /// ∂ξ by a variable, and the relative motions of the contacts in it.
+    /// Computes ∂ξ by one variable, and its relative motions at the contacts.
     fn differentiate(&self, work: &mut SumWork, (variable, slope): (usize, Pair), relative: &mut [Complex64]) {
         let (rows, of) = (self.rows.count(), &self.coefficients);
         work.force.fill(Complex64::ZERO);

@@ -26,7 +26,7 @@ use crate::linalg::dense::general_eigen;
 use crate::linalg::factors::cholesky::entries_by_degrees;
 use crate::linalg::factors::factor::is_dense;
 use crate::linalg::factors::lu::Lu;
-use nalgebra::DMatrix;
+use crate::linalg::libraries::DMatrix;
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -67,7 +67,7 @@ const MOST_CONDITION: f64 = 1e4;
 /// Kind: tuned; measured on: not recorded.
 const MOST_CHANGE: f64 = 1e-6;
 
-/// The poles of the i-th carried harmonic, or why it has none.
+/// The poles of the i-th carried harmonic, or the reason why it has none.
 pub(crate) fn poles(
     condensed: &Condensed,
     i: usize,
@@ -96,7 +96,7 @@ pub(crate) fn poles(
     Ok(wave.poles(key, interrupt)?.ok_or(UNSUITABLE))
 }
 
-/// Whether these are the poles of a block.
+/// Whether these poles belong to a block: same matrices and same harmonic, where that matters.
 pub(crate) fn are_of(poles: &WavePoles, block: &HarmonicBlock) -> bool {
     let (reference, mass, damping) = &poles.key.matrices;
     let is_same = |a: &Arc<Vec<Complex64>>, b: &Arc<Vec<Complex64>>| Arc::ptr_eq(a, b) || a == b;
@@ -110,7 +110,7 @@ pub(crate) fn are_of(poles: &WavePoles, block: &HarmonicBlock) -> bool {
         && is_same(damping, &block.damping)
 }
 
-/// The poles of a wave as the work of a real matrix.
+/// Work of computing the poles of a wave: order³, times a factor for complex matrices.
 fn work(condensed: &Condensed, block: &HarmonicBlock) -> f64 {
     let real = |values: &[Complex64]| values.iter().all(|z| z.im == 0.0);
     let is_real = block.structural.is_none()
@@ -122,7 +122,8 @@ fn work(condensed: &Condensed, block: &HarmonicBlock) -> f64 {
     order.powi(3) * if is_real { 1.0 } else { WORK_OF_COMPLEX }
 }
 
-/// Why the poles of a wave take more than a second, or longer than the factorisations of a sweep, if they do.
+/// The reason to take factors where the poles of a wave take more than a second or longer than the factorisations of
+/// a sweep; else `None`.
 fn factors_are_quicker(condensed: &Condensed, block: &HarmonicBlock) -> Result<Option<FlexibilityWay>> {
     let work = work(condensed, block);
     if work > MOST_POLE_WORK {
@@ -142,13 +143,13 @@ fn factors_are_quicker(condensed: &Condensed, block: &HarmonicBlock) -> Result<O
     Ok((OPERATIONS_OF_POLES * work > of_factors).then_some(FlexibilityWay::Sparse))
 }
 
-/// A wave in its undamped modes.
+/// One wave in the modes of its undamped part.
 struct Undamped {
     n: usize,
-    /// μ of the motions with mass, and φ of all, those without mass first.
+    /// μ of the motions with mass; and the shapes φ of all motions, those without mass first.
     masses: Vec<f64>,
     shapes: Vec<Complex64>,
-    /// C̃ and Ẽ of the motions with mass.
+    /// Projected damping C̃ and Ẽ of the motions with mass, column after column.
     damping: Vec<Complex64>,
     rest: Vec<Complex64>,
 }
@@ -210,7 +211,7 @@ impl Undamped {
         }))
     }
 
-    /// The poles with their vectors.
+    /// Computes the poles and their vectors; `None` where one is badly conditioned.
     fn poles(&self, key: Key, interrupt: &Interrupt<'_>) -> Result<Option<WavePoles>> {
         let m = self.masses.len();
         let order = 2 * m;
@@ -255,8 +256,8 @@ impl Undamped {
         self.on_the_structure(key, (&values, &motions, &adjoints)).map(Some)
     }
 
-    /// The second half of each row of X⁻¹, so that the sum over all is exact where poles are equal, too; `None` where one is badly
-    /// conditioned.
+    /// Second half of each row of X⁻¹, so that the sum over all poles is exact also where some are equal; `None`
+    /// where one is badly conditioned.
     fn adjoints(&self, vectors: &[Complex64], interrupt: &Interrupt<'_>) -> Result<Option<Vec<Complex64>>> {
         let m = self.masses.len();
         let order = 2 * m;
@@ -286,7 +287,7 @@ impl Undamped {
         Ok(Some(adjoints))
     }
 
-    /// λ − l Z(λ) p/(l Z′(λ) p); `None` where that is no small step.
+    /// Poles after one Newton step, λ − l Z(λ) p/(l Z′(λ) p); `None` where a step is not small.
     fn refined(
         &self,
         (values, frequencies): (&[Complex64], &[f64]),
@@ -317,7 +318,7 @@ impl Undamped {
         Ok(Some(refined))
     }
 
-    /// The poles with vectors over the degrees of freedom, in the order of 1/|λ|.
+    /// Poles with vectors over the degrees of freedom, ordered by 1/|λ|.
     fn on_the_structure(
         &self,
         key: Key,
@@ -361,7 +362,7 @@ impl Undamped {
     }
 }
 
-/// Whether a matrix acts on some motions, beyond rounding.
+/// Whether a matrix acts on some of the `motions`, beyond rounding.
 fn is_damped(matrix: &DMatrix<Complex64>, motions: &[Complex64]) -> bool {
     let n = matrix.nrows();
     motions.chunks_exact(n).any(|x| {
@@ -375,7 +376,7 @@ fn is_damped(matrix: &DMatrix<Complex64>, motions: &[Complex64]) -> bool {
     })
 }
 
-/// M, with the matrices of a tied speed that grow with ω².
+/// Values of M plus the matrices of a tied speed that grow with ω².
 fn inertia(block: &HarmonicBlock) -> Result<Vec<Complex64>> {
     let mut mass = try_copy(&block.mass, CONTEXT)?;
     if let Some(tied) = &block.tied {
@@ -387,14 +388,14 @@ fn inertia(block: &HarmonicBlock) -> Result<Vec<Complex64>> {
     Ok(mass)
 }
 
-/// A X for a square matrix of order n.
+/// Product A X for a square matrix A of order n.
 fn times(a: &[Complex64], x: &[Complex64], n: usize) -> Result<Vec<Complex64>> {
     let mut product = try_vec(x.len(), Complex64::ZERO, CONTEXT)?;
     complex_products::multiply(a, x, &mut product, n);
     Ok(product)
 }
 
-/// Φᴴ A Φ
+/// Projected matrix Φᴴ A Φ, column after column.
 fn projected(a: &DMatrix<Complex64>, shapes: &[Complex64], interrupt: &Interrupt<'_>) -> Result<Vec<Complex64>> {
     let n = a.nrows();
     let count = shapes.len() / n.max(1);

@@ -14,11 +14,9 @@ use crate::interrupt::Interrupt;
 use crate::linalg::dense::complex_products;
 use crate::linalg::dense::eigen::{self, Pairs};
 use crate::linalg::exact_sums::quadratic::{self, ComplexSum, terms_of_moduli};
+use crate::linalg::libraries::{Accum, DMatrix, MatMut, MatRef, Par, matmul};
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::linalg::sparse_storage::triangle::Entry;
-use faer::linalg::matmul::matmul;
-use faer::{Accum, MatMut, MatRef, Par};
-use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the modes of the structure";
@@ -49,7 +47,7 @@ const COMPLEX_UP_TO: usize = 48;
 /// Kind: tuned; measured on: not recorded.
 const MANY_ENTRIES: usize = 4;
 
-/// μ, rising, and φ of a Hermitian pencil, `mass` on the pattern of K.
+/// Modes of a Hermitian pencil: μ, rising, and φ; `mass` is given on the pattern of K.
 ///
 /// # Errors
 /// As [`eigen::generalised`].
@@ -73,7 +71,7 @@ pub(crate) fn modes(stiffness: &Csc, mass: &[Complex64], interrupt: &Interrupt<'
     Ok(pairs)
 }
 
-/// K and M on the pattern of their entries alone: damping of modes has all of them.
+/// K and M on the pattern of their nonzero entries: modal damping makes the pattern full.
 fn without_zeros(stiffness: &Csc, mass: &[Complex64]) -> Result<(Csc, Vec<Complex64>)> {
     let (mut pattern, mut masses) = (Csc::zero(stiffness.cols)?, Vec::new());
     for j in 0..stiffness.cols {
@@ -91,7 +89,8 @@ fn without_zeros(stiffness: &Csc, mass: &[Complex64]) -> Result<(Csc, Vec<Comple
     Ok((pattern, masses))
 }
 
-/// Steps until they are small; whether they are. Real modes of real matrices take real products, a quarter of the work.
+/// Repeats the refinement step until it is small; `false` if it stays large. Real modes of real matrices take real
+/// products, a quarter of the work.
 fn refine(stiffness: &Csc, mass: &[Complex64], pairs: &mut Pairs, interrupt: &Interrupt<'_>) -> Result<bool> {
     let n = stiffness.rows;
     if n < 2 {
@@ -127,7 +126,7 @@ fn refine(stiffness: &Csc, mass: &[Complex64], pairs: &mut Pairs, interrupt: &In
     Ok(are_small)
 }
 
-/// c ← A B or Aᴴ B for matrices of so many rows.
+/// Product of dense matrices with n rows: c ← A B, or Aᴴ B.
 type Product<T> = fn(&[T], &[T], &mut [T], usize);
 
 #[derive(Clone, Copy)]
@@ -160,7 +159,7 @@ fn steps<T: Entry>(
     Ok(false)
 }
 
-/// The dense matrix with these values at the entries of a pattern.
+/// The dense matrix with the given values at the entries of a pattern, zero elsewhere.
 pub(crate) fn dense(pattern: &Csc, values: &[Complex64]) -> Result<DMatrix<Complex64>> {
     let n = pattern.rows;
     let mut a = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
@@ -172,7 +171,7 @@ pub(crate) fn dense(pattern: &Csc, values: &[Complex64]) -> Result<DMatrix<Compl
     Ok(DMatrix::from_vec(n, n, a))
 }
 
-/// One step with M and K on the pattern of the stiffness; returns the largest entry of E.
+/// One refinement step with M and K on the pattern of the stiffness; returns the largest entry of E.
 fn step<T: Entry>(
     (stiffness, [m, k], by): (&Csc, [&[T]; 2], Products<T>),
     values: &mut [f64],
@@ -232,7 +231,7 @@ fn step<T: Entry>(
     Ok(largest)
 }
 
-/// Replaces products with K of motions that hardly strain the structure by those in twice the precision.
+/// Recomputes products with K in twice the precision for motions that hardly strain the structure.
 fn strain_soft_exactly<T: Entry>(
     stiffness: &Csc,
     x: &[T],
@@ -261,7 +260,7 @@ fn strain_soft_exactly<T: Entry>(
     Ok(())
 }
 
-/// |z|, without care for numbers whose square is out of range.
+/// |z| by a plain square root: the square of |z| must be in the range of numbers.
 fn modulus(z: &Complex64) -> f64 {
     z.norm_sqr().sqrt()
 }
@@ -274,7 +273,7 @@ fn moduli(of: &[Complex64]) -> Result<Vec<f64>> {
     Ok(found)
 }
 
-/// Y ← A X for values on a pattern; as blocks where most entries are there.
+/// Y ← A X for values on a pattern; A is treated as dense where most of its entries are present.
 fn multiply<T: Entry>(
     (pattern, plain): (&Csc, Product<T>),
     values: &[T],

@@ -6,45 +6,46 @@
 use crate::condense::by_factors::flexibility::Table;
 use crate::condense::by_modes::sum_terms::Frequency;
 use crate::error::{Result, try_room};
+use crate::linalg::libraries::{Arch, Simd, WithSimd};
 use num_complex::Complex64;
-use pulp::{Arch, Simd, WithSimd};
 
 /// Entries of the table: of the contact and the response by the contact, of both by the excitation.
 /// Kind: fixed.
 const SINGLE_CONTACT_ENTRIES: usize = 4;
 
-/// One complex number for each entry, real parts first.
+/// A complex number for each entry of the table: all real parts, then all imaginary parts.
 type Entries = [[f64; SINGLE_CONTACT_ENTRIES]; 2];
 
-/// One mode.
+/// A mode as one contact and the response see it.
 pub struct Mode {
-    /// μ
+    /// Eigenvalue μ of the mode.
     pub value: f64,
-    /// Output times input of each entry.
+    /// For each entry of the table, the product of output and input of the mode.
     pub products: Entries,
 }
 
-/// The modes as one contact and the response see them.
+/// The modes of a wave as one contact and the response see them.
 pub struct SingleContact {
     arch: Arch,
     modes: Vec<Mode>,
-    /// Whether the excitation moves a mode.
+    /// Whether the excitation moves some mode.
     is_forced: bool,
 }
 
-/// The numbers of a frequency: c and s of the denominators 1 + c − s μ, their derivatives by ω, and ν.
+/// Numbers of one frequency: c and s of the denominators 1 + c − s μ, their derivatives by ω, and ν.
 #[derive(Clone, Copy)]
 pub struct Denominators {
     pub at: Frequency,
     pub s: Complex64,
     pub d_s: Complex64,
     pub nu: f64,
-    /// Least modulus of a denominator over 1 + ν² |μ|.
+    /// Smallest modulus that is allowed for a denominator, over 1 + ν² |μ|.
     pub least: f64,
 }
 
 impl SingleContact {
-    /// From μ, the outputs of each mode, two numbers of contact and response, and the excitation seen by each, if there is one.
+    /// Makes the modes from μ, from the motions `left` of contact and response in each mode, and from the excitation
+    /// along each mode, if there is one.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -66,18 +67,18 @@ impl SingleContact {
         })
     }
 
-    /// The modes.
+    /// The modes of the wave.
     pub fn modes(&self) -> &[Mode] {
         &self.modes
     }
 
-    /// Whether the excitation moves one of them.
+    /// Whether the excitation moves some mode.
     pub fn is_forced(&self) -> bool {
         self.is_forced
     }
 
-    /// The table and its slope with the low-rank term whose coefficient is e and its derivative; `false` where a denominator
-    /// is small.
+    /// Computes the table and its slope with the low-rank term, whose coefficient is e with derivative ∂e. Returns
+    /// `false` where a denominator is small.
     pub fn evaluate(&self, by: Denominators, (e, d_e): (Complex64, Complex64), table: &mut Table) -> bool {
         let Some([t, d_t]) = self.arch.dispatch(Sum(&self.modes, by)) else {
             return false;
@@ -109,7 +110,7 @@ impl SingleContact {
     }
 }
 
-/// The sums over the modes and their derivatives; `None` where a denominator is small.
+/// Sums over the modes and their derivatives; the result is `None` where a denominator is small.
 struct Sum<'a>(&'a [Mode], Denominators);
 
 impl WithSimd for Sum<'_> {

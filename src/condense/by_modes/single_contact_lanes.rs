@@ -8,9 +8,9 @@ use crate::condense::by_modes::modal_table::ModalTable;
 use crate::condense::by_modes::sum_terms::Factors;
 use crate::condense::by_modes::wave_modes::NEAR_RESONANCE;
 use crate::error::{Result, try_push, try_room};
+use crate::linalg::libraries::{Arch, Simd, WithSimd};
 use core::array::from_fn;
 use num_complex::Complex64;
-use pulp::{Arch, Simd, WithSimd};
 
 /// Harmonics of a group: a multiple of the numbers in a vector of any processor.
 /// Kind: block.
@@ -20,50 +20,51 @@ const HARMONIC_LANES: usize = 8;
 /// Kind: fixed.
 const LANE_ENTRIES: usize = 4;
 
-/// One number for each harmonic of a group.
+/// A real number for each harmonic of a group.
 type Numbers = [f64; HARMONIC_LANES];
 
-/// One complex number for each harmonic of a group.
+/// A complex number for each harmonic of a group.
 #[derive(Clone, Copy)]
 struct Lanes {
     re: Numbers,
     im: Numbers,
 }
 
-/// One mode of each harmonic of a group.
+/// The k-th mode of each harmonic of a group.
 struct Mode {
-    /// μ
+    /// Eigenvalue μ of the mode in each harmonic.
     value: Numbers,
-    /// Output times input of each entry.
+    /// For each entry of the table, the product of output and input of the mode.
     products: [Lanes; LANE_ENTRIES],
 }
 
-/// Up to eight harmonics.
+/// Up to eight harmonics that are computed together.
 struct Group {
-    /// Position of the first one among the carried harmonics, and their number. Lanes beyond it repeat the last one.
+    /// Index of the first harmonic of the group among the carried ones, and the number of harmonics in it. Lanes
+    /// beyond that number repeat the last harmonic.
     first: usize,
     count: usize,
     number: Numbers,
-    /// α, β and η
+    /// Damping factors α and β and loss factor η of each harmonic.
     alpha: Numbers,
     beta: Numbers,
     loss_factor: Numbers,
-    /// Stiffness of the contact and Im κ.
+    /// Stiffness of the contact and Im κ in each harmonic.
     stiffness: Numbers,
     imaginary: Numbers,
-    /// Lanes below this one have all harmonics in which the excitation moves a mode.
+    /// Number of the first lanes that hold all harmonics in which the excitation moves a mode.
     forced: usize,
     modes: Vec<Mode>,
 }
 
-/// All harmonics.
+/// All carried harmonics of a model with one contact, in groups.
 pub(crate) struct SingleContactLanes {
     arch: Arch,
     groups: Vec<Group>,
 }
 
 impl SingleContactLanes {
-    /// The harmonics with these tables; `None` unless each is one of a single contact.
+    /// Groups the harmonics of these tables; `None` unless each table is one of a single contact.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -119,7 +120,7 @@ impl SingleContactLanes {
         }))
     }
 
-    /// Makes all tables and their slopes at `omega`; `false`, with tables that are not to be used, where a denominator is
+    /// Makes all tables and their slopes at `omega`. Returns `false`, with unusable tables, where a denominator is
     /// small or a number is not finite.
     pub fn evaluate(&self, omega: f64, tables: &mut [Table]) -> bool {
         self.groups.iter().all(|group| {
@@ -141,7 +142,8 @@ impl SingleContactLanes {
     }
 }
 
-/// Fills in the entries of the tables of a group and their slopes at ω; `false` where that is not possible.
+/// Fills in the table entries of a group and their slopes at ω; the result is `false` where a denominator is small or
+/// a number is not finite.
 struct Evaluate<'a>(&'a Group, f64, &'a mut [[Lanes; LANE_ENTRIES]; 2]);
 
 impl WithSimd for Evaluate<'_> {
@@ -161,11 +163,11 @@ impl WithSimd for Evaluate<'_> {
     }
 }
 
-/// Numbers of a few harmonics at a time.
+/// A view on the numbers of as many harmonics as fit a vector of the processor.
 #[derive(Clone, Copy)]
 struct Vectors<S> {
     simd: S,
-    /// Number of the vector among those of a group.
+    /// Index of the vector among those of a group.
     k: usize,
 }
 
@@ -203,7 +205,7 @@ impl<S: Simd> Vectors<S> {
         self.simd.mul_f64s(a, b)
     }
 
-    /// z p and its derivative.
+    /// Products z p of two numbers with their derivatives.
     #[inline(always)]
     fn scaled(self, [z, d_z]: [Complex<S::f64s>; 2], [p, d_p]: [Complex<S::f64s>; 2]) -> [Complex<S::f64s>; 2] {
         [self.times(z, p), self.plus(self.times(d_z, p), self.times(z, d_p))]
@@ -227,7 +229,7 @@ impl<S: Simd> Vectors<S> {
         }
     }
 
-    /// The product with i·x.
+    /// Product of a complex number with i·x.
     #[inline(always)]
     fn times_imaginary(self, a: Complex<S::f64s>, x: S::f64s) -> Complex<S::f64s> {
         Complex {
@@ -242,7 +244,7 @@ impl<S: Simd> Vectors<S> {
         simd.add_f64s(simd.mul_f64s(a.re, a.re), simd.mul_f64s(a.im, a.im))
     }
 
-    /// The tables and their slopes; `false` where a denominator is small or a number is not finite.
+    /// Computes the tables and their slopes; `false` where a denominator is small or a number is not finite.
     #[inline(always)]
     fn evaluate(self, group: &Group, omega: f64, tables: &mut [[Lanes; LANE_ENTRIES]; 2]) -> bool {
         let simd = self.simd;

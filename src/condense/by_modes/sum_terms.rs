@@ -5,16 +5,17 @@ use crate::condense::by_modes::wave_poles::WavePoles;
 use num_complex::Complex64;
 use std::sync::Arc;
 
-/// The terms of a sum.
+/// Terms by which the flexibility is a sum.
 #[derive(Clone, Debug)]
 pub enum Source {
-    /// d = 1 + c − s μ of modes, s = ν² − iνα, c = i(νβ + η).
+    /// Modes, with denominators d = 1 + c − s μ, s = ν² − iνα, c = i(νβ + η).
     Modes(Arc<WaveModes>),
-    /// d = 1 − s μ of poles, s = iν.
+    /// Poles, with denominators d = 1 − s μ, s = iν.
     Poles(Arc<WavePoles>),
 }
 
-/// a and b of the denominators d = a − b μ at a frequency, with their derivatives by it, and iν of dashpots beside them.
+/// Coefficients a and b of the denominators d = a − b μ at a frequency, with their derivatives by it, and iν for
+/// dashpots beside modal damping.
 #[derive(Clone, Copy)]
 pub struct Denominator {
     pub a: Complex64,
@@ -25,14 +26,14 @@ pub struct Denominator {
     pub d_i_nu: Complex64,
 }
 
-/// Factors that the low-rank term follows: c of the damping by stiffness, 1 + c = a, and iν of the dashpots.
+/// Factors of the low-rank term: c of the damping by stiffness, 1 + c = a, and iν of the dashpots.
 #[derive(Clone, Copy)]
 pub struct Factors {
     pub c: Complex64,
     pub i_nu: Complex64,
 }
 
-/// These at a frequency, and their derivatives by it.
+/// Factors of the low-rank term at a frequency, and their derivatives by it.
 #[derive(Clone, Copy)]
 pub struct Frequency {
     pub at: Factors,
@@ -40,7 +41,7 @@ pub struct Frequency {
 }
 
 impl Factors {
-    /// No dashpots.
+    /// Factors for damping by stiffness alone, without dashpots.
     pub fn of_stiffness(c: Complex64) -> Self {
         Self {
             c,
@@ -50,7 +51,7 @@ impl Factors {
 }
 
 impl Denominator {
-    /// The factors of the low-rank term.
+    /// Factors of the low-rank term and their derivatives.
     pub(crate) fn frequency(self) -> Frequency {
         Frequency {
             at: Factors {
@@ -82,7 +83,7 @@ impl Source {
         }
     }
 
-    /// Number of terms.
+    /// Number of modes or poles.
     pub fn len(&self) -> usize {
         match self {
             Self::Modes(modes) => modes.values.len(),
@@ -90,7 +91,7 @@ impl Source {
         }
     }
 
-    /// μ of a term.
+    /// Value μ of the k-th mode or pole.
     pub fn value(&self, k: usize) -> Complex64 {
         match self {
             Self::Modes(modes) => modes.values[k].into(),
@@ -98,7 +99,7 @@ impl Source {
         }
     }
 
-    /// The shapes and their adjoints.
+    /// Shapes and adjoint shapes, column after column; both are the same for modes.
     pub fn shapes(&self) -> (&[Complex64], &[Complex64]) {
         match self {
             Self::Modes(modes) => (&modes.vectors, &modes.vectors),
@@ -106,7 +107,7 @@ impl Source {
         }
     }
 
-    /// The numbers of harmonic h at a frequency ω.
+    /// Coefficients of the denominators in harmonic h at the angular frequency ω.
     pub fn denominator(&self, h: f64, omega: f64) -> Denominator {
         let nu = h * omega;
         let i = |x: f64| Complex64::new(0.0, x);
@@ -133,7 +134,8 @@ impl Source {
         }
     }
 
-    /// 1/d of all terms at ν, and −∂d/d²; `false` where a denominator is small: as small as `near` of modes, whose μ have all digits.
+    /// Computes 1/d of all terms at ν, and −∂d/d². Returns `false` where a denominator is small: for modes, whose μ
+    /// have all digits, below `near`.
     pub fn invert(
         &self,
         (at, nu, near): (Denominator, f64, f64),

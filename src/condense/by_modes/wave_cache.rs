@@ -42,31 +42,31 @@ const CONTEXT: &str = "the modes of the structure";
 /// Kind: tuned; measured on: not recorded.
 const POLES_FROM: usize = 49;
 
-/// The terms of a sum, or why there is none.
+/// Modes or poles of a wave, or the reason why it has none.
 type Found = core::result::Result<Source, FlexibilityWay>;
 
-/// The waves met so far.
+/// Modes and poles of the waves computed so far.
 #[derive(Default)]
 pub struct WaveCache {
     waves: Vec<Arc<WaveModes>>,
-    /// Matrices of blocks whose modes were asked for, which other blocks share.
+    /// Matrices of blocks whose modes were requested, which other blocks may share.
     blocks: Vec<KnownBlock>,
     poles: Vec<Arc<WavePoles>>,
-    /// Whether a wave without modes was met, and why one has no poles: there are no others then; whether one has too many directions of
-    /// damping beside αM + βK, too.
+    /// Whether a wave without modes was met, so that others have none; the reason why a wave has no poles; and
+    /// whether a wave has too many directions of damping beside αM + βK.
     has_no_modes: bool,
     without_poles: Option<FlexibilityWay>,
     has_many_dampers: bool,
 }
 
-/// Z_κ at rest and M of blocks, with the modes of their wave.
+/// Z_κ at zero frequency and M of a block, with the modes of its wave.
 struct KnownBlock {
     reference: Arc<Csc>,
     mass: Values,
     modes: Arc<WaveModes>,
 }
 
-/// The waves of one model and the rows of its contacts in them, for condensed models with different harmonics.
+/// Waves of one model, and the rows of its contacts in them, shared by condensed models with different harmonics.
 #[derive(Default)]
 pub struct SharedWaves {
     waves: Cell<WaveCache>,
@@ -98,7 +98,7 @@ impl SharedWaves {
         rows
     }
 
-    /// Whether some wave has modes; `None` as long as none was asked for.
+    /// Whether some wave has modes; `None` as long as no wave was asked for.
     pub fn some_have_modes(&self) -> Option<bool> {
         let waves = self.waves.take();
         let known = !waves.waves.is_empty() || !waves.poles.is_empty();
@@ -115,12 +115,13 @@ impl WaveCache {
         self.waves.len()
     }
 
-    /// Whether no wave has modes or poles.
+    /// Whether the waves of this model have neither modes nor poles.
     pub fn is_refused(&self) -> bool {
         self.has_no_modes && self.without_poles.is_some()
     }
 
-    /// The modes of the i-th carried harmonic, or where damping couples them its poles, or why it has none.
+    /// Modes of the i-th carried harmonic; its poles where damping couples the modes; or the reason why it has
+    /// neither.
     pub fn of(&mut self, model: &Model, condensed: &Condensed, i: usize, interrupt: &Interrupt<'_>) -> Result<Found> {
         let block = &condensed.blocks()[i];
         if block.number == 0 {
@@ -157,7 +158,8 @@ impl WaveCache {
         Ok(Ok(Source::Poles(poles)))
     }
 
-    /// The modes of a harmonic that has no poles, with the directions of its damping beside αM + βK, or the reason.
+    /// Modes of a harmonic without poles, together with the directions of its damping beside αM + βK; or the reason
+    /// why it has none.
     fn with_dampers(
         &mut self,
         at: (&Model, &Condensed, usize),
@@ -171,7 +173,7 @@ impl WaveCache {
         Ok(found.map(Source::Modes).ok_or(reason))
     }
 
-    /// The modes of a harmonic whose damping beside αM + βK has few directions.
+    /// Modes of a harmonic whose damping beside αM + βK has few directions; `None` where it has many.
     fn beside_dampers(
         &mut self,
         at: (&Model, &Condensed, usize),
@@ -185,7 +187,8 @@ impl WaveCache {
         Ok(found)
     }
 
-    /// The modes of a harmonic; `None` where the damping is not proportional, and not beside few directions where these are allowed.
+    /// Modes of a harmonic; `None` where damping is not proportional, few further directions being allowed if
+    /// `dampers`.
     fn modes(
         &mut self,
         (model, condensed, i): (&Model, &Condensed, usize),
@@ -211,7 +214,7 @@ impl WaveCache {
         Ok(found)
     }
 
-    /// The modes of a block that shares its matrices with none before.
+    /// Modes of a block whose matrices share no memory with an earlier one, found by comparing values or computed.
     fn find_by_values(
         &mut self,
         (model, condensed, i): (&Model, &Condensed, usize),
@@ -249,7 +252,8 @@ pub(crate) fn have_modes(model: &Model) -> Result<bool> {
     Ok(proportional([&mass, &stiffness, &damping]).is_some())
 }
 
-/// Whether a sweep with so many harmonics, or more, takes all modes of a structure that is too large for them in general.
+/// Whether a sweep with at least this many harmonics takes all modes of a structure that is larger than the general
+/// limit for them.
 pub(crate) fn are_all_modes_wanted(model: &Model, harmonics: usize, interrupt: &Interrupt<'_>) -> Result<bool> {
     let n = model.structure().ndof();
     if n > ALL_BESIDE_DEAR_FACTORS_UP_TO || has_other_terms(model) || model.structure().whole_loss_factor()?.is_none() {
@@ -283,7 +287,8 @@ fn on_one_pattern(model: &Model) -> Result<(Csc, [Vec<Complex64>; 3])> {
     Ok((pattern, values))
 }
 
-/// Whether a structure has terms of which its modes know nothing.
+/// Whether a structure has terms that modes do not contain: a structural damping matrix, aerodynamic forces or
+/// rotation.
 fn has_other_terms(model: &Model) -> bool {
     let structure = model.structure();
     structure.has_structural_matrix() || structure.has_aero() || structure.is_rotating()
@@ -310,8 +315,8 @@ fn elastic_reference(model: &Model, condensed: &Condensed, i: usize) -> Result<O
     Ok(Some((reference, loss_factor)))
 }
 
-/// The modes of the i-th carried harmonic with this K_κ, and with few directions of damping beside αM + βK where these are allowed; from
-/// those of the wave that travels the other way where they are known.
+/// Modes of the i-th carried harmonic with this K_κ, and with few directions of damping beside αM + βK if `few`;
+/// conjugated from the modes of the wave that travels the other way, where these are known.
 fn modes_of(
     model: &Model,
     condensed: &Condensed,
@@ -382,7 +387,8 @@ fn modes_of(
     }))
 }
 
-/// Rows of the linear springs and stuck contacts with their stiffness; `None` where one couples its directions.
+/// Rows of the linear springs and stuck contacts with their stiffness; `None` where the stiffness of one couples its
+/// directions.
 fn springs(model: &Model, condensed: &Condensed, block: &HarmonicBlock) -> Result<Option<Vec<(MotionRow, f64)>>> {
     let (structure, number) = (model.structure(), block.number);
     let mut rows = Vec::new();

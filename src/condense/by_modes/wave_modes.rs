@@ -17,25 +17,26 @@ use num_complex::Complex64;
 /// Kind: rounding.
 const PROPORTIONAL: f64 = 1e-12;
 
-/// The modes of one wave.
+/// Modes of one wave of the structure with its contacts stuck.
 #[derive(Debug)]
 pub struct WaveModes {
-    /// K_κ, M and the motion of the next sector over that of this one, by which the wave is known again: without the last a wave of
-    /// real matrices would be the one that travels the other way, whose rows of springs are other ones.
+    /// K_κ, M and the motion of the next sector over that of this sector, by which the wave is recognised. Without
+    /// the last one, a wave of real matrices would be confused with the wave that travels the other way, whose
+    /// springs have other rows.
     pub(crate) reference: Csc,
     pub(crate) mass: Vec<Complex64>,
     pub(crate) next: Complex64,
-    /// μ
+    /// Eigenvalues μ of the modes.
     pub(crate) values: Vec<f64>,
-    /// φ, column after column.
+    /// Shapes φ, column after column.
     pub(crate) vectors: Vec<Complex64>,
-    /// α and β
+    /// Factors α and β of proportional damping αM + βK.
     pub(crate) proportional: (f64, f64),
-    /// η
+    /// Loss factor η of the structure.
     pub(crate) loss_factor: f64,
-    /// Rows of B beyond those of the relative coordinates, with their stiffness.
+    /// Rows of B beyond the relative coordinates (springs), with their stiffness.
     pub(crate) springs: Vec<(MotionRow, f64)>,
-    /// Lᴴ of the damping αM + βK + L Lᴴ.
+    /// Rows Lᴴ of the damping αM + βK + L Lᴴ.
     pub(crate) dampers: Vec<MotionRow>,
 }
 
@@ -53,7 +54,8 @@ pub(crate) const NEAR_ALONE: f64 = 1e-10;
 pub(crate) const NEAR_MODE: f64 = 1e-4;
 
 impl WaveModes {
-    /// 1/(1 + c − s μ) of all modes at ν, s being ν² and what damping adds to it; `false` where a denominator is as small as `near`.
+    /// Computes 1/(1 + c − s μ) of all modes at ν, where s is ν² and its damping terms. Returns `false` where a
+    /// denominator is below `near`.
     pub(crate) fn invert(
         &self,
         (c, s): (Complex64, Complex64),
@@ -75,7 +77,7 @@ impl WaveModes {
         self.proportional.1 != 0.0 || self.loss_factor != 0.0
     }
 
-    /// Whether these are the modes of a wave with this K_κ and M, and this motion of the next sector.
+    /// Whether these modes belong to a wave with this K_κ and M, and this motion of the next sector.
     pub(crate) fn is_of(&self, reference: &Csc, mass: &[Complex64], next: Complex64) -> bool {
         self.next == next
             && self.has_pattern(reference)
@@ -83,7 +85,7 @@ impl WaveModes {
             && self.mass == mass
     }
 
-    /// Whether the shapes of the wave with this K_κ and M are conjugate.
+    /// Whether the wave with this K_κ and M travels the other way, so that its shapes are the conjugate ones.
     pub(crate) fn is_conjugate_of(&self, reference: &Csc, mass: &[Complex64]) -> bool {
         let are_conjugate =
             |a: &[Complex64], b: &[Complex64]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| *a == b.conj());

@@ -6,14 +6,15 @@ use crate::linalg::sparse_storage::sparse::Csc;
 use num_complex::Complex64;
 use std::sync::Arc;
 
-/// The poles of one wave.
+/// Poles of one wave under any damping.
 #[derive(Debug)]
 pub struct WavePoles {
-    /// Matrices by which the wave is known again: Z_κ at rest with its κ, M, C, and the harmonic where a speed is tied to the frequency.
+    /// Data by which the wave is recognised: Z_κ at zero frequency with its κ, M, C, and the harmonic where a speed
+    /// is tied to the frequency.
     pub(crate) key: Key,
-    /// μ = 1/λ, rising in modulus; 0 of a motion without mass.
+    /// μ = 1/λ, rising in modulus; 0 for a motion without mass.
     pub(crate) values: Vec<Complex64>,
-    /// −x/λ and l̄ of each pole, n numbers: the flexibility is Σ (−x/λ) l/(1 − s μ).
+    /// Vectors −x/λ and l̄ of each pole, n numbers each: the flexibility is Σ (−x/λ) l/(1 − s μ).
     pub(crate) shapes: Vec<Complex64>,
     pub(crate) adjoints: Vec<Complex64>,
 }
@@ -25,7 +26,7 @@ pub(crate) struct Key {
 }
 
 impl WavePoles {
-    /// 1/(1 − iν μ) of all poles; `false` where a denominator is small.
+    /// Computes 1/(1 − iν μ) of all poles; `false` where a denominator is small.
     pub(crate) fn invert(&self, nu: f64, inverse: &mut [Complex64]) -> bool {
         let mut least = f64::INFINITY;
         for (inverse, mu) in inverse.iter_mut().zip(&self.values) {

@@ -68,13 +68,14 @@ pub(crate) fn is_worth_its_columns(
     Ok(OF_COLUMNS * (columns as f64).powi(3) <= times * factors.harmonics as f64 * of_one)
 }
 
-/// Work of complex LU factors of order n whose triangle has so many entries.
+/// Work of complex LU factors of order n whose triangle has `entries` entries.
 fn of_factors(entries: usize, n: usize) -> f64 {
     let entries = entries as f64;
     OF_ENTRIES * entries + entries * entries / n as f64
 }
 
-/// Whether all modes of a matrix with this pattern take less time than the factors of so many harmonics along a range.
+/// Whether all modes of a matrix with this pattern take less time than its factors for so many harmonics along a
+/// range.
 pub(crate) fn are_all_modes_quicker(pattern: &Csc, harmonics: usize) -> Result<bool> {
     let n = pattern.cols;
     let of_factors = of_factors(entries_by_degrees(pattern)?, n);

@@ -12,13 +12,13 @@
 //! an error (1 + ‖Z⁻¹‖) ε_p of the motion, which no larger basis makes smaller.
 
 use crate::condense::HarmonicBlock;
-use crate::condense::blocks::sweep::Sweep;
 use crate::error::{Result, Status, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::hermitian;
 use crate::linalg::factors::lu::Lu;
 use crate::linalg::iterative::block_krylov::SparseVector;
 use crate::model::few_motions::reduced_wave::{ReducedView, Remainder, WaveDamping};
+use crate::options::Range;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the certificate of the flexibility";
@@ -34,14 +34,14 @@ const STEPS: usize = 4;
 /// Largest estimated errors over a sweep.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Certificate {
-    /// By motions that the basis lacks.
+    /// Error by motions that the basis lacks.
     pub basis: f64,
-    /// The same with rounding.
+    /// Error by motions that the basis lacks and by rounding.
     pub total: f64,
 }
 
 impl Certificate {
-    /// The larger errors of two; one that is not a number is larger than all.
+    /// The larger value of each error; one that is not a number counts as infinite.
     pub fn max(self, other: Self) -> Self {
         let larger = |a: f64, b: f64| {
             if a.is_nan() || b.is_nan() {
@@ -56,20 +56,21 @@ impl Certificate {
         }
     }
 
-    /// Nothing is known.
+    /// Infinite errors, before anything is known.
     const UNKNOWN: Self = Self {
         basis: f64::INFINITY,
         total: f64::INFINITY,
     };
 }
 
-/// The largest estimated error of a harmonic over a sweep: at its ends, its middle, and the resonances within it; that up to the first
-/// frequency alone at which it exceeds `enough`. The residuals at that one are appended to `residuals`, see [`residual`].
+/// The largest estimated error of a harmonic over a sweep: at its ends, its middle, and the resonances within it. The
+/// search stops at the first frequency where the error exceeds `enough`, and appends the residuals there to
+/// `residuals`, see [`residual`].
 pub(crate) fn certificate(
     (block, view): (&HarmonicBlock, &ReducedView),
     loss_factor: f64,
     inputs: &[SparseVector],
-    (sweep, enough): (Sweep, f64),
+    (sweep, enough): (Range, f64),
     residuals: &mut Vec<Complex64>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Certificate> {
@@ -89,7 +90,7 @@ pub(crate) fn certificate(
             try_push(&mut frequencies, frequency, CONTEXT)?;
         }
     }
-    let mut lacks_resonances = sweep.is_range() && block.number > 0;
+    let mut lacks_resonances = !sweep.is_single() && block.number > 0;
     let mut lu = Lu::new(n, inputs.len().max(1))?;
     let mut worst = Certificate::default();
     let remainder = &view.pencil().remainder;
@@ -140,7 +141,7 @@ pub(crate) fn certificate(
     Ok(worst)
 }
 
-/// The residual of a motion of the coordinates at ν = hω: its coefficients over the images that the basis lacks.
+/// Residual of a motion q of the coordinates at ν = hω, as coefficients over the images that the basis lacks.
 fn residual(view: &ReducedView, (nu, loss_factor): (f64, f64), q: &[Complex64]) -> Result<Vec<Complex64>> {
     let pencil = view.pencil();
     let (order, last) = (pencil.order(), pencil.remainder.last);
@@ -177,7 +178,7 @@ fn residual(view: &ReducedView, (nu, loss_factor): (f64, f64), q: &[Complex64]) 
     Ok(v)
 }
 
-/// ρ
+/// Norm ρ of a residual.
 fn norm(residual: &[Complex64], remainder: &Remainder) -> f64 {
     let mut sum = Complex64::ZERO;
     for (column, z) in remainder.gram.chunks_exact(residual.len().max(1)).zip(residual) {
@@ -188,7 +189,7 @@ fn norm(residual: &[Complex64], remainder: &Remainder) -> f64 {
     sum.re.max(0.0).sqrt()
 }
 
-/// Sum of the norms of the forces Z q and of the images of the basis in them, by which the rounding of solutions counts.
+/// Sum of the norms of the forces Z q and of the basis' images in them, which scales the rounding of solutions.
 fn images(view: &ReducedView, (nu, loss_factor): (f64, f64), q: &[Complex64]) -> Result<f64> {
     let pencil = view.pencil();
     let size = |x: &[Complex64]| x.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
@@ -243,11 +244,11 @@ fn inverse_norm(lu: &mut Lu<Complex64>, n: usize, interrupt: &Interrupt<'_>) -> 
     Ok(norm)
 }
 
-/// Appends natural frequencies, with the real part of the reference stiffness, within a sweep.
+/// Appends the natural frequencies within a sweep, computed with the real part of the reference stiffness.
 fn resonances(
     block: &HarmonicBlock,
     view: &ReducedView,
-    sweep: Sweep,
+    sweep: Range,
     frequencies: &mut Vec<f64>,
     interrupt: &Interrupt<'_>,
 ) -> Result<()> {

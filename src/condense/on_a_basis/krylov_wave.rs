@@ -69,8 +69,9 @@ const LEAST_GAIN: f64 = 3.0;
 /// Kind: tuned; measured on: not recorded.
 const USUAL_BLOCKS: usize = 7;
 
-/// Prepares a wave for `inputs` until its certificate is below `limit` or the basis has `most` columns; `None` where it has no definite
-/// matrix. `error` computes the certificate as far as it is at most some number, and the residuals where it is not.
+/// Prepares a basis for a wave with the forces `inputs` until its certificate is below `limit` or it has `most`
+/// columns; `None` where the wave has no definite matrix. `error` computes the certificate up to a given number, and
+/// the residuals where it exceeds that.
 pub(crate) fn prepare(
     matrices: &WaveMatrices<'_>,
     inputs: Vec<SparseVector>,
@@ -111,7 +112,7 @@ pub(crate) fn prepare(
     }
 }
 
-/// A basis from its columns, and back.
+/// Two functions: one makes a basis of its columns, the other takes the columns back.
 type Wrapping<T> = (fn(Vec<T>) -> Basis, fn(Basis) -> Vec<T>);
 
 fn build<T: Entry>(
@@ -186,8 +187,8 @@ fn build<T: Entry>(
     }
 }
 
-/// Adds blocks until the basis is so much larger that a certificate is worth its cost; `false` where there is nothing to add. A block of
-/// many candidates is limited to those that the residuals need to be below `limit`.
+/// Adds blocks until the basis has grown enough for another certificate; `false` where nothing is left to add. A
+/// block of many candidates is limited to those that the residuals need to be below `limit`.
 fn grown<T: Entry>(
     krylov: &mut BlockKrylov<T>,
     most: usize,
@@ -216,14 +217,14 @@ fn grown<T: Entry>(
     Ok(has_grown)
 }
 
-/// The data that a basis keeps of its matrices.
+/// Data of the matrices that a basis keeps.
 struct Prepared {
     shift: f64,
     damping: OfWave,
     n: usize,
 }
 
-/// Damping without the matrix that the basis has for it.
+/// Form of the damping: proportional, with few directions, or general; the basis itself stores a general matrix.
 enum OfWave {
     Proportional(f64, f64),
     Few(FewDirections),
@@ -231,7 +232,7 @@ enum OfWave {
 }
 
 impl Prepared {
-    /// Forces that the first block holds beside the inputs.
+    /// Forces in the first block of the basis beside the inputs.
     fn directions(&self) -> &[SparseVector] {
         match &self.damping {
             OfWave::Few(few) => &few.directions,
@@ -240,8 +241,8 @@ impl Prepared {
     }
 }
 
-/// K and M. Those that the model keeps become triangles when the factor stands, in the memory that its preparation leaves;
-/// those that were made for the wave are freed before.
+/// K and M during the construction. Matrices of the model become triangles once the factor exists, in the memory that
+/// its preparation frees; matrices made for the wave are freed before.
 enum Operators<'a, T> {
     Kept([WaveMatrix<'a>; 2]),
     Triangles([Triangle<T>; 2]),
@@ -267,7 +268,7 @@ impl<'a, T: Entry> Operators<'a, T> {
     }
 }
 
-/// The factor of K + σM at the first shift that makes it definite. The assembled matrices are freed before it is made, and
+/// Makes the factor of K + σM at the first shift that makes it definite. The assembled matrices are freed before, and
 /// assembled again for another shift.
 fn started<T: Entry>(
     matrices: &WaveMatrices<'_>,
@@ -334,7 +335,7 @@ fn pencil<T: Entry>(krylov: &BlockKrylov<T>, prepared: &Prepared, interrupt: &In
     of_rotation(krylov, prepared, (values, rotation), (0.0, 0.0), interrupt)
 }
 
-/// μ and the rotation of the basis that makes the mass diagonal.
+/// Computes μ and the rotation of the basis that makes the mass diagonal.
 fn modes<T: Entry>(krylov: &BlockKrylov<T>, interrupt: &Interrupt<'_>) -> Result<(Vec<f64>, Vec<Complex64>)> {
     let order = krylov.order();
     let mut mass = try_copy(krylov.reduced(0), CONTEXT)?;
@@ -383,8 +384,9 @@ fn of_rotation<T: Entry>(
     })
 }
 
-/// The same without the rounding of products with A = K + σM in the softest motions: with their Gram matrix G in the inner
-/// product of A, G = L Lᴴ, the basis V Q L⁻ᴴ is orthonormal, and a rotation more makes the mass diagonal again.
+/// The reduced matrices, as `pencil` makes them, without the rounding of products with A = K + σM in the softest
+/// motions. With their Gram matrix G in the inner product of A, G = L Lᴴ, the basis V Q L⁻ᴴ is orthonormal, and one
+/// more rotation makes the mass diagonal again.
 fn exact_pencil<T: Entry>(
     krylov: &mut BlockKrylov<T>,
     prepared: &Prepared,
@@ -454,7 +456,7 @@ fn exact_pencil<T: Entry>(
     of_rotation(krylov, prepared, (values, new), (solutions, left), interrupt)
 }
 
-/// Qᴴ x for columns of coordinates.
+/// Qᴴ x for each column of coordinates.
 fn rotated_back(x: &[Complex64], q: &[Complex64], n: usize) -> Result<Vec<Complex64>> {
     let mut found = try_vec(x.len(), Complex64::ZERO, CONTEXT)?;
     for (to, x) in found.chunks_exact_mut(n.max(1)).zip(x.chunks_exact(n.max(1))) {
@@ -465,7 +467,7 @@ fn rotated_back(x: &[Complex64], q: &[Complex64], n: usize) -> Result<Vec<Comple
     Ok(found)
 }
 
-/// Qᴴ C Q
+/// Qᴴ C Q, column after column.
 fn rotated(c: &[Complex64], q: &[Complex64], n: usize) -> Result<Vec<Complex64>> {
     let mut product = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
     for (to, q) in product.chunks_exact_mut(n.max(1)).zip(q.chunks_exact(n.max(1))) {

@@ -106,7 +106,7 @@ pub(crate) fn reduced_block(
     })
 }
 
-/// A ← A + forceᴴ k motion
+/// A ← A + forceᴴ k motion, for one spring of stiffness k.
 fn add(a: &mut Csc, force: &MotionRow, motion: &MotionRow, k: Complex64) {
     let n = a.rows;
     for &(j, y) in motion.terms() {

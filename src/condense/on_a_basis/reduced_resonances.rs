@@ -9,6 +9,7 @@ use crate::model::Model;
 use crate::model::matrices::wave::Wave;
 use crate::model::natural_modes::quadratic_problem::Quadratic;
 use crate::model::natural_modes::resonances::{Resonance, damped_frequencies, gyroscopic_frequencies};
+use crate::options::Range;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the resonances";
@@ -20,7 +21,7 @@ const CONTEXT: &str = "the resonances";
 pub fn reduced_resonances(
     model: &Model,
     condensed: &Condensed,
-    range: (f64, f64),
+    range: Range,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<Vec<Resonance>>> {
     let mut found = Vec::new();

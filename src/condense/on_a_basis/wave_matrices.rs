@@ -22,33 +22,33 @@ pub(crate) struct WaveMatrices<'a> {
     pub conjugated: bool,
     pub key: WaveKey,
     pub frequency: f64,
-    /// The factors that a basis is an alternative to; `None` where it is tried in any case.
+    /// Factors that the basis competes with; `None` where a basis is tried in any case.
     pub instead_of: Option<Factors>,
     pub memory_limit: usize,
 }
 
-/// The factors that a basis is an alternative to.
+/// Size and use of the factors that a basis competes with.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Factors {
     /// Highest angular frequency at which the wave is needed.
     pub highest: f64,
-    /// Number of harmonics that belong to it.
+    /// Number of carried harmonics that belong to the wave.
     pub harmonics: usize,
-    /// Whether they are needed along a range.
+    /// Whether factors are needed along a range of frequencies.
     pub along_range: bool,
 }
 
-/// K, M and the damping of a wave.
+/// Assembled matrices of a wave: K, M and the damping.
 pub(crate) struct Assembled<'a> {
     pub stiffness: WaveMatrix<'a>,
     pub mass: WaveMatrix<'a>,
     pub damping: Damping,
 }
 
-/// Damping as αM + βK, alone or beside few directions, or as a matrix.
+/// Damping, as αM + βK with few further directions, or as a matrix.
 pub(crate) enum Damping {
     Proportional(f64, f64),
-    /// αM + βK and few directions.
+    /// αM + βK and few further directions.
     Few(FewDirections),
     General(Csc),
 }
@@ -60,7 +60,7 @@ impl WaveMatrices<'_> {
             .matrix_of_wave(kind, self.number, self.conjugated)
     }
 
-    /// `None` where stiffness or mass is not Hermitian.
+    /// Assembles K, M and damping of the wave; `None` where stiffness or mass is not Hermitian.
     pub fn assembled(&self, interrupt: &Interrupt<'_>) -> Result<Option<Assembled<'_>>> {
         let structure = self.model.structure();
         let stiffness = match self.matrix(MatrixKind::Stiffness)? {

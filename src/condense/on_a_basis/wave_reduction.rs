@@ -6,7 +6,6 @@
 
 use crate::condense::HarmonicBlock;
 use crate::condense::blocks::contact_classes::ContactClasses;
-use crate::condense::blocks::sweep::Sweep;
 use crate::condense::by_modes::wave_cache::{ALL_UP_TO, are_all_modes_wanted};
 use crate::condense::on_a_basis::basis_outlook::USUAL_COLUMNS;
 use crate::condense::on_a_basis::certificate::{Certificate, certificate};
@@ -21,6 +20,7 @@ use crate::model::few_motions::reduced_wave::{ReducedView, ReducedWave, WaveKey}
 use crate::model::matrices::sector_motion::MOTION_TERMS;
 use crate::model::matrices::spring::Row;
 use crate::model::matrices::wave::Wave;
+use crate::options::Range;
 use crate::options::{Flexibility, SolverOptions};
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -70,8 +70,8 @@ pub(crate) struct Request<'a> {
     pub options: &'a SolverOptions,
     pub numbers: &'a [usize],
     pub contacts: (&'a ContactClasses, &'a [(usize, usize)]),
-    pub sweep: Sweep,
-    /// η of the whole stiffness; `None` where a complex one has another form.
+    pub sweep: Range,
+    /// Loss factor η of the whole stiffness; `None` where a complex stiffness has another form.
     pub loss_factor: Option<f64>,
 }
 
@@ -85,10 +85,10 @@ impl Request<'_> {
     }
 }
 
-/// A wave with the harmonics that belong to it.
+/// A wave with the carried harmonics that belong to it.
 struct Group {
     key: WaveKey,
-    /// Position among the carried harmonics, and whether its matrices are conjugated.
+    /// Index among the carried harmonics, and whether the matrices of this harmonic are the conjugate ones.
     members: Vec<(usize, bool)>,
     inputs: Vec<SparseVector>,
 }
@@ -175,7 +175,8 @@ pub(crate) fn reduced_blocks(
     Ok(Some((blocks, worst.total)))
 }
 
-/// Largest error by motions that a basis lacks. Where all modes are an alternative, it is as exact as they are.
+/// Largest allowed error by motions that a basis lacks. Where all modes are an alternative, the basis must be as
+/// exact as they are.
 fn limit(request: &Request<'_>) -> f64 {
     let asked = request.options.certificate;
     if request.is_forced() || request.ndof() > ALL_UP_TO {
@@ -185,11 +186,11 @@ fn limit(request: &Request<'_>) -> f64 {
     }
 }
 
-/// Whether a basis takes less time than all modes, where these are an alternative. Estimates of errors need so many harmonics that
-/// they take the modes.
+/// Whether a basis takes less time than all modes, where these are possible. Estimates of errors need so many
+/// harmonics that they take the modes.
 fn pays(request: &Request<'_>, groups: &[Group], interrupt: &Interrupt<'_>) -> Result<bool> {
     let n = request.ndof();
-    let is_estimated = request.options.tolerance > 0.0 && request.sweep.is_range();
+    let is_estimated = request.options.tolerance > 0.0 && !request.sweep.is_single();
     if n > ALL_UP_TO {
         return Ok(!is_estimated || !are_all_modes_wanted(request.model, request.numbers.len(), interrupt)?);
     }
@@ -201,7 +202,7 @@ fn pays(request: &Request<'_>, groups: &[Group], interrupt: &Interrupt<'_>) -> R
     let is_modal = request.model.structure().has_modal_damping();
     let of_sum = if is_modal { OF_POLES } else { OF_MODES };
     let of_sum = of_sum * groups.len() as f64 * (n as f64).powi(3);
-    Ok(request.options.tolerance == 0.0 && request.sweep.is_range() && of_basis < of_sum)
+    Ok(request.options.tolerance == 0.0 && !request.sweep.is_single() && of_basis < of_sum)
 }
 
 fn declined<T>(forced: bool) -> Result<Option<T>> {
@@ -215,7 +216,8 @@ fn declined<T>(forced: bool) -> Result<Option<T>> {
     )
 }
 
-/// The wave of a group with its certificate: as kept, or prepared; `None` where it has no definite matrix.
+/// The reduced wave of a group with its certificate, kept by the model or prepared here; `None` where it has no
+/// definite matrix.
 fn wave_of(
     request: &Request<'_>,
     group: &Group,
@@ -290,7 +292,8 @@ fn reference_frequency(request: &Request<'_>, group: &Group) -> f64 {
     request.sweep.of_harmonic(lowest)[1]
 }
 
-/// The factors that the basis of a wave is an alternative to: in between all modes and a size where these are too dear.
+/// Size and use of the factors that the basis of a wave competes with: for structures too large for all modes, up to
+/// a size where factors are too slow.
 fn instead_of(request: &Request<'_>, group: &Group) -> Option<Factors> {
     let n = request.ndof();
     if request.is_forced() || n <= ALL_UP_TO || n > WAVE_REDUCTION_DIRECT_UP_TO {
@@ -301,11 +304,12 @@ fn instead_of(request: &Request<'_>, group: &Group) -> Option<Factors> {
     Some(Factors {
         highest: request.sweep.of_harmonic(highest)[2],
         harmonics: group.members.len(),
-        along_range: request.sweep.is_range(),
+        along_range: !request.sweep.is_single(),
     })
 }
 
-/// The largest certificate of the harmonics of a group; a lower bound of it where that exceeds `enough`, with the `residuals` there.
+/// Largest certificate over the harmonics of a group; a lower bound where it exceeds `enough`, with the `residuals`
+/// at that frequency.
 fn certificate_of(
     request: &Request<'_>,
     group: &Group,
@@ -339,7 +343,7 @@ fn certificate_of(
     Ok(worst)
 }
 
-/// η in a harmonic: there is none at rest.
+/// Loss factor η in harmonic `number`: 0 in the mean.
 fn loss_factor(request: &Request<'_>, number: usize) -> f64 {
     if number == 0 {
         0.0
@@ -348,8 +352,8 @@ fn loss_factor(request: &Request<'_>, number: usize) -> f64 {
     }
 }
 
-/// The waves of the carried harmonics, with the vectors whose flexibility each must hold; `None` where they are more than
-/// `most` in one of them.
+/// The waves of the carried harmonics, with the force vectors that each basis must hold; `None` where one needs more
+/// than `most`.
 fn groups(request: &Request<'_>, most: usize, interrupt: &Interrupt<'_>) -> Result<Option<Vec<Group>>> {
     let structure = request.model.structure();
     let mut groups: Vec<Group> = Vec::new();

@@ -29,19 +29,19 @@ const MOST_TUNED_TERMS: usize = 1_500;
 /// Orthonormal motions of each wave, as many in each.
 #[derive(Debug)]
 pub struct TunedBasis {
-    /// N, degrees of freedom of a sector, and motions of a wave.
+    /// Number of sectors N; then degrees of freedom of a sector, and motions of each wave.
     pub sectors: usize,
     pub order: usize,
     pub rank: usize,
-    /// b and c, wave after wave, column after column.
+    /// Motions b and c, wave after wave, column after column.
     pub motions: Vec<Complex64>,
     dual: Vec<Complex64>,
-    /// e^(−2πi k/N)
+    /// Roots e^(−2πi k/N), k = 0 .. N − 1.
     roots: Vec<Complex64>,
 }
 
 impl TunedBasis {
-    /// The motions that these matrices of all sectors feel; `None` where they are too many.
+    /// The motions on which the `differing` matrices of all sectors act; `None` where they are too many.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
@@ -97,12 +97,12 @@ impl TunedBasis {
         }))
     }
 
-    /// b of a wave.
+    /// Motions b of wave p, column after column.
     pub fn of_wave(&self, p: usize) -> &[Complex64] {
         &self.motions[p * self.rank * self.order..][..self.rank * self.order]
     }
 
-    /// D of a matrix of all sectors.
+    /// D of a matrix of all sectors: its projection on the motions.
     pub fn of(&self, a: &Csc, interrupt: &Interrupt<'_>) -> Result<Vec<Complex64>> {
         let (sectors, n, r) = (self.sectors, self.order, self.rank);
         let all = sectors * r;
@@ -153,17 +153,17 @@ impl TunedBasis {
 /// Kind: block.
 const FEW: usize = 8;
 
-/// A row of so many columns.
+/// One row of a block of columns.
 type Few = [Complex64; FEW];
 
-/// sum ← sum + factor x
+/// sum ← sum + factor x, for one row of a block of columns.
 fn add_multiple(sum: &mut Few, factor: Complex64, x: &Few) {
     for (sum, x) in sum.iter_mut().zip(x) {
         *sum += factor * x;
     }
 }
 
-/// Y ← A X
+/// Y ← A X, for a block of columns.
 fn multiply_few(a: &Csc, x: &[Few], y: &mut [Few]) {
     y.fill(Few::default());
     for (j, x) in x.iter().enumerate() {
@@ -195,7 +195,8 @@ fn random_product(a: &Csc, scale: &[f64], random: &mut Random) -> Result<(Vec<Ve
     Ok((parts, size))
 }
 
-/// Adds the waves of a motion to the columns of each, where they are beyond them by more than rounding; whether one was.
+/// Adds the parts of a motion in each wave to the columns of that wave, unless they are combinations of these up to
+/// rounding; returns whether one was added.
 fn add_waves(
     (motion, rounding): (&[f64], f64),
     roots: &[Complex64],

@@ -24,26 +24,26 @@ const CONTEXT: &str = "the factors of a tuned wheel";
 /// Kind: block.
 const RIGHT_SIDES: usize = 8;
 
-/// Factors of one harmonic at a time.
+/// Factors of the tuned wheel and of its correction, for one harmonic at a time.
 pub struct TunedFactors {
     pub(crate) plan: Arc<TunedPlan>,
-    /// Factors of waves 0 to N/2.
+    /// Factors of the matrices Z_p of waves p = 0 to N/2.
     waves: Vec<Factor>,
-    /// Z_p⁻¹ b of all waves.
+    /// Z_p⁻¹ b for all waves.
     pub(crate) flexible: Vec<Complex64>,
-    /// D
+    /// Middle matrix D of the low-rank differences.
     differences: Vec<Complex64>,
-    /// I + D bᴴG⁰b
+    /// Factors of I + D bᴴG⁰b.
     middle: Option<Lu<Complex64>>,
-    /// e^(−2πi k/N)
+    /// Roots e^(−2πi k/N), k = 0 .. N − 1.
     roots: Vec<Complex64>,
-    /// Right sides in waves.
+    /// Right-hand sides transformed to waves.
     spectrum: Vec<Complex64>,
     columns: usize,
 }
 
 impl TunedFactors {
-    /// Memory for matrices of a plan, and for so many right sides at a time.
+    /// Memory for the matrices of a plan, and for `columns` right-hand sides at a time.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -69,7 +69,8 @@ impl TunedFactors {
         })
     }
 
-    /// Factors the i-th block, the sum of its terms with these factors; returns the largest entry of the tuned wheel.
+    /// Factors the matrix of the i-th block: the sum of its terms, each times its factor. Returns the largest entry
+    /// of the tuned wheel.
     ///
     /// # Errors
     /// `Singular` where the tuned wheel or the wheel is; `OutOfMemory`; `StoppedByCaller`.
@@ -94,7 +95,7 @@ impl TunedFactors {
         Ok(largest)
     }
 
-    /// Z_p⁻¹ b of all waves, and the factors of I + D bᴴG⁰b.
+    /// Computes Z_p⁻¹ b for all waves, and factors I + D bᴴG⁰b.
     fn factor_middle(&mut self, interrupt: &Interrupt<'_>) -> Result<()> {
         let plan = Arc::clone(&self.plan);
         let (n, r) = (plan.basis.order, plan.basis.rank);
@@ -120,7 +121,7 @@ impl TunedFactors {
         middle.factor(interrupt)
     }
 
-    /// x̂ ← Z_p⁻¹ x̂ for columns of a wave.
+    /// x̂ ← Z_p⁻¹ x̂ for columns x̂ of wave p.
     pub(crate) fn solve_wave(&mut self, p: usize, columns: &mut [Complex64], interrupt: &Interrupt<'_>) -> Result<()> {
         let sectors = self.plan.basis.sectors;
         let (of, transposed) = if 2 * p <= sectors {
@@ -134,7 +135,7 @@ impl TunedFactors {
         self.waves[of].solve(columns, transposed, interrupt)
     }
 
-    /// bᴴ x̂ of columns of a wave.
+    /// Products bᴴ x̂ for columns x̂ of wave p.
     pub(crate) fn along_basis(&self, p: usize, columns: &[Complex64], products: &mut [Complex64]) {
         let (n, r) = (self.plan.basis.order, self.plan.basis.rank);
         for (column, products) in columns.chunks_exact(n).zip(products.chunks_exact_mut(r.max(1))) {
@@ -144,7 +145,7 @@ impl TunedFactors {
         }
     }
 
-    /// 1/N Σ_p x_p e^(2πi pd/N) of groups of so many numbers.
+    /// Transform from waves to sectors, 1/N Σ_p x_p e^(2πi pd/N), for groups of `length` numbers.
     pub(crate) fn over_sectors(&self, of_waves: &[Complex64], length: usize) -> Result<Vec<Complex64>> {
         let sectors = self.plan.basis.sectors;
         let mut found = try_vec(of_waves.len(), Complex64::ZERO, CONTEXT)?;
@@ -162,7 +163,7 @@ impl TunedFactors {
         Ok(found)
     }
 
-    /// Σ_s x_s e^(−2πi ps/N) of groups of so many numbers.
+    /// Transform from sectors to waves, Σ_s x_s e^(−2πi ps/N), for groups of `length` numbers.
     pub(crate) fn over_waves(&self, of_sectors: &[Complex64], length: usize) -> Result<Vec<Complex64>> {
         let sectors = self.plan.basis.sectors;
         let mut found = try_vec(of_sectors.len(), Complex64::ZERO, CONTEXT)?;
@@ -180,12 +181,12 @@ impl TunedFactors {
         Ok(found)
     }
 
-    /// e^(−2πi k/N)
+    /// The root e^(−2πi k/N).
     pub(crate) fn root(&self, k: usize) -> Complex64 {
         self.roots[k % self.plan.basis.sectors]
     }
 
-    /// v ← (I + D bᴴG⁰b)⁻¹ D v for columns of N times the rank.
+    /// v ← (I + D bᴴG⁰b)⁻¹ D v for columns of N · rank numbers.
     pub(crate) fn correct(&mut self, v: &mut [Complex64], interrupt: &Interrupt<'_>) -> Result<()> {
         let Some(middle) = &mut self.middle else { return Ok(()) };
         let given = try_copy(v, CONTEXT)?;
@@ -193,7 +194,7 @@ impl TunedFactors {
         middle.solve_columns(v, false, interrupt)
     }
 
-    /// Solves Z X = B in place for the columns of `b`; Z is its transpose.
+    /// Solves Z X = B in place for the columns of `b`. Since Z is symmetric, this also solves with its transpose.
     ///
     /// # Errors
     /// `Singular` when the solution is not finite; `OutOfMemory`; `StoppedByCaller`.
@@ -246,7 +247,7 @@ impl TunedFactors {
         Ok(())
     }
 
-    /// Subtracts Z_p⁻¹ b v from columns of waves, v column after column.
+    /// Subtracts Z_p⁻¹ b v from columns of all waves; v is stored column after column.
     fn subtract_basis(&self, of_waves: &mut [Complex64], v: &[Complex64]) {
         let (sectors, n, r) = (self.plan.basis.sectors, self.plan.basis.order, self.plan.basis.rank);
         if r == 0 {

@@ -38,17 +38,17 @@ const PROPORTIONAL_DIFFERENCES: f64 = 1e-13;
 /// Kind: fixed.
 pub const TUNED_TERMS: usize = 6;
 
-/// A wheel whose differences have low rank.
+/// The split of a wheel into a tuned one and differences of low rank.
 #[derive(Debug)]
 pub struct TunedPlan {
     rings: Vec<TunedRing>,
     pub(crate) basis: TunedBasis,
     matrices: Vec<Matrix>,
-    /// The ring of each block, and the matrices of its terms.
+    /// For each block, the index of its ring and the indices of the matrices of its terms.
     blocks: Vec<(usize, [Option<usize>; TUNED_TERMS])>,
 }
 
-/// One of the matrices: its means around the ring, and D.
+/// A matrix of the wheel: its means around the ring, and its differences D.
 #[derive(Debug)]
 struct Matrix {
     means: Vec<Complex64>,
@@ -135,19 +135,19 @@ impl TunedPlan {
         }))
     }
 
-    /// The ring of the i-th block.
+    /// Pattern of the i-th block, sector by sector.
     pub fn ring(&self, i: usize) -> &TunedRing {
         &self.rings[self.blocks[i].0]
     }
 
-    /// The means around the ring of the i-th block as the sum of its terms with these factors.
+    /// Means around the ring of the i-th block's matrix: the sum of its terms, each times its factor.
     pub fn means(&self, i: usize, factors: &[Complex64; TUNED_TERMS]) -> Result<Vec<Complex64>> {
         let mut sum = try_vec(self.ring(i).kinds(), Complex64::ZERO, CONTEXT)?;
         self.add_terms((i, factors), |matrix| &matrix.means, &mut sum);
         Ok(sum)
     }
 
-    /// D of the i-th block, likewise.
+    /// Differences D of the i-th block's matrix: the sum of its terms, each times its factor.
     pub fn differences(&self, i: usize, factors: &[Complex64; TUNED_TERMS], sum: &mut [Complex64]) {
         sum.fill(Complex64::ZERO);
         self.add_terms((i, factors), |matrix| &matrix.differences, sum);
@@ -170,7 +170,7 @@ impl TunedPlan {
     }
 }
 
-/// Size of the stiffness of each degree of freedom of a sector; the first matrix is a stiffness.
+/// Size of the stiffness at each degree of freedom of a sector; the first of the matrices is a stiffness.
 fn scale_of(rings: &[TunedRing], matrices: &[(usize, &[Complex64])], order: usize) -> Result<Vec<f64>> {
     let mut scale = try_vec(order, 0.0_f64, CONTEXT)?;
     for &(ring, values) in matrices.iter().take(1) {
@@ -185,7 +185,8 @@ fn scale_of(rings: &[TunedRing], matrices: &[(usize, &[Complex64])], order: usiz
     Ok(scale)
 }
 
-/// The matrices of which that of a block is a sum, in the order of the factors of [`TunedPlan::differences`].
+/// Values of the matrices whose sum is the dynamic stiffness of a block, in the order of the factors of
+/// [`TunedPlan::differences`].
 fn values_of(block: &HarmonicBlock) -> [Option<&[Complex64]>; TUNED_TERMS] {
     let own = match &block.artificial {
         Artificial::Stiffness(own) => Some(&own[..]),
@@ -201,7 +202,8 @@ fn values_of(block: &HarmonicBlock) -> [Option<&[Complex64]>; TUNED_TERMS] {
     ]
 }
 
-/// The factor of a matrix that is a multiple of another one, to rounding, as damping by stiffness is; `None` where it is not.
+/// The factor a/b of a matrix `a` that is a multiple of another one up to rounding, as with damping by stiffness;
+/// else `None`.
 fn multiple(a: &Csc, of: &Csc) -> Option<Complex64> {
     if a.values.is_empty() || a.col_ptr != of.col_ptr || a.row_idx != of.row_idx {
         return None;

@@ -8,17 +8,18 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the tuned wheel";
 
-/// Entries of one pattern that are alike in a tuned wheel.
+/// Entries of one pattern, sorted into kinds: those of a kind are equal in a tuned wheel.
 #[derive(Debug)]
 pub struct TunedRing {
     sectors: usize,
-    /// The pattern, without values of its own.
+    /// Pattern of the whole wheel, without meaningful values.
     pattern: Csc,
-    /// The kind of each stored entry.
+    /// Kind of each stored entry, by its index.
     place: Vec<u32>,
-    /// Distance, row and column within a sector, position in the pattern of a wave, and number of stored entries of each kind.
+    /// For each kind: distance of its sectors, row and column within a sector, position in the pattern of a wave, and
+    /// number of stored entries.
     kinds: Vec<Kind>,
-    /// The pattern of a wave.
+    /// Pattern of the matrix of a wave.
     wave: Csc,
 }
 
@@ -32,7 +33,7 @@ struct Kind {
 }
 
 impl TunedRing {
-    /// The kinds of entries of a pattern; `None` where there are too many entries.
+    /// Sorts the entries of a pattern into kinds; `None` where there are too many entries.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -102,7 +103,7 @@ impl TunedRing {
         }))
     }
 
-    /// Whether this is the ring of a pattern.
+    /// Whether this ring was made for a pattern.
     pub fn is_of(&self, pattern: &Csc) -> bool {
         self.pattern.col_ptr == pattern.col_ptr && self.pattern.row_idx == pattern.row_idx
     }
@@ -112,13 +113,13 @@ impl TunedRing {
         self.kinds.len()
     }
 
-    /// A matrix of a wave, to fill.
+    /// An unfilled matrix with the pattern of a wave.
     pub fn wave(&self) -> Result<Csc> {
         self.wave.try_clone()
     }
 
-    /// The means of a matrix around the ring, kind after kind. Those of equal entries are these, without rounding, which soft motions of a
-    /// stiff structure would feel.
+    /// Means of a matrix around the ring, kind after kind. Equal entries are their own mean, without rounding, which
+    /// soft motions of a stiff structure would feel.
     pub fn means(&self, values: &[Complex64]) -> Result<Vec<Complex64>> {
         let mut first = try_vec(self.kinds.len(), None, CONTEXT)?;
         let mut means = try_vec(self.kinds.len(), Complex64::ZERO, CONTEXT)?;
@@ -137,7 +138,7 @@ impl TunedRing {
         Ok(means)
     }
 
-    /// Z_p from the means; `roots` are e^(−2πi k/N).
+    /// Fills the matrix Z_p of wave p from the means; `roots` are e^(−2πi k/N).
     pub fn fill_wave(&self, means: &[Complex64], (p, roots): (usize, &[Complex64]), wave: &mut Csc) {
         wave.values.fill(Complex64::ZERO);
         for (kind, mean) in self.kinds.iter().zip(means) {
@@ -145,7 +146,7 @@ impl TunedRing {
         }
     }
 
-    /// Means of the diagonal of a sector.
+    /// Means of the diagonal entries, for each degree of freedom of a sector.
     pub fn diagonal(&self, values: &[Complex64]) -> Result<Vec<Complex64>> {
         let mut diagonal = try_vec(self.wave.rows, Complex64::ZERO, CONTEXT)?;
         for (kind, mean) in self.kinds.iter().zip(self.means(values)?) {
@@ -156,7 +157,7 @@ impl TunedRing {
         Ok(diagonal)
     }
 
-    /// Largest diagonal entry of a matrix over the scale there.
+    /// Largest ratio of a diagonal entry of a matrix to the scale of its degree of freedom.
     pub fn largest_ratio(&self, values: &[Complex64], scale: &[f64]) -> Result<f64> {
         let diagonal = self.diagonal(values)?;
         let ratios = diagonal.iter().zip(scale).map(|(d, s)| d.norm() / s);
@@ -208,13 +209,13 @@ impl TunedRing {
         Ok(found)
     }
 
-    /// The kinds of a column.
+    /// Range of the kinds whose entries lie in column j of a wave's matrix.
     fn of_column(&self, j: usize) -> core::ops::Range<usize> {
         let first = |j: usize| self.kinds.partition_point(|kind| kind.column < j);
         first(j)..first(j + 1)
     }
 
-    /// Whether a matrix is its transpose: yᵀAx = xᵀAy for random x and y, relative to sums of their terms.
+    /// Whether a matrix equals its transpose: yᵀAx = xᵀAy for random x and y, relative to sums of their terms.
     pub fn is_symmetric(&self, values: &[Complex64], rounding: f64) -> Result<bool> {
         let all = self.sectors * self.wave.rows;
         let mut vectors = try_vec(2 * all, 0.0, CONTEXT)?;

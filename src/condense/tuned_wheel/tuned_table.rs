@@ -17,16 +17,18 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the contact flexibility of a wheel";
 
-/// Motions under a force in the first sector, by the distance to it: of k contact forces and of the excitation.
+/// Motions under a force in the first sector, by the distance from it: under each of k contact forces and the
+/// excitation.
 struct ByDistance {
-    /// Rows of the contacts, and of the response after them: k + 1 rows of k + 1 columns.
+    /// Motions read by the contacts and by the response after them: k + 1 rows of k + 1 columns for each distance.
     read: Vec<Complex64>,
-    /// R_p of the motions of the basis, and bᴴ of the first k + 1 columns, wave after wave.
+    /// Wave after wave: motions of the basis read by the rows R_p; and products of bᴴ with the first k + 1 columns.
     left: Vec<Complex64>,
     along: Vec<Complex64>,
 }
 
-/// Rows of the contacts of the first sector, the force on all sectors, and the row of the response.
+/// Inputs and outputs of the table: rows of the contacts of the first sector, force on all sectors, and row of the
+/// response.
 pub(crate) struct Outputs<'a> {
     rows: &'a [MotionRow],
     force: &'a [Complex64],
@@ -34,7 +36,7 @@ pub(crate) struct Outputs<'a> {
 }
 
 impl<'a> Outputs<'a> {
-    /// Those of a block under a force; `None` where the contacts of its sectors are not alike.
+    /// Rows of a block under a force; `None` where the contacts of its sectors are not alike.
     pub fn new(
         block: &'a HarmonicBlock,
         (sectors, order): (usize, usize),
@@ -65,7 +67,7 @@ impl<'a> Outputs<'a> {
 }
 
 impl TunedFactors {
-    /// The table with the current factors, and the motion under the excitation.
+    /// Makes the table with the current factors, and the motion under the excitation.
     ///
     /// # Errors
     /// `Singular`; `OutOfMemory`; `StoppedByCaller`.
@@ -85,7 +87,7 @@ impl TunedFactors {
         Ok(())
     }
 
-    /// The flexibilities of all waves, transformed.
+    /// Computes the flexibilities of all waves and transforms them to distances between sectors.
     fn by_distance(&mut self, outputs: &Outputs<'_>, interrupt: &Interrupt<'_>) -> Result<ByDistance> {
         let (sectors, n, r) = (self.plan.basis.sectors, self.plan.basis.order, self.plan.basis.rank);
         let k = outputs.rows.len();
@@ -126,7 +128,7 @@ impl TunedFactors {
         Ok(found)
     }
 
-    /// The table of the tuned wheel.
+    /// Fills in the table of the tuned wheel.
     fn assemble(&self, found: &ByDistance, k: usize, value: &mut [Complex64]) {
         let (sectors, rows) = (self.plan.basis.sectors, k + 1);
         let outputs = sectors * k + 1;
@@ -146,7 +148,7 @@ impl TunedFactors {
         }
     }
 
-    /// Subtracts G⁰_wb (I + D G⁰_bb)⁻¹ D G⁰_bw.
+    /// Subtracts the effect of the differences of the sectors, G⁰_wb (I + D G⁰_bb)⁻¹ D G⁰_bw.
     fn subtract_low_rank(
         &mut self,
         found: &ByDistance,

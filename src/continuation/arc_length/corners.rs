@@ -50,13 +50,13 @@ impl Continuation {
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Point>> {
         let mut probe = try_copy(&self.current.v, CONTEXT)?;
-        metric.unit(&self.current.tangent, &mut self.row);
-        metric.add(&mut probe, depth, &self.row);
+        metric.unit(&self.current.tangent, &mut self.memory.row);
+        metric.add(&mut probe, depth, &self.memory.row);
         let Some(positive) = self.direction_beyond(problem, metric, &probe, interrupt)? else {
             return Ok(None);
         };
         if positive != self.current.positive {
-            for r in &mut self.row {
+            for r in &mut self.memory.row {
                 *r = -*r;
             }
         }
@@ -73,8 +73,8 @@ impl Continuation {
         Ok(None)
     }
 
-    /// Leaves the direction of the linearisation at `probe` as the row of the plane. Returns whether the bordered
-    /// determinant is positive there.
+    /// Leaves the direction of the linearisation at `probe` as the row that defines the plane of the correction.
+    /// Returns whether the bordered determinant is positive at `probe`; `None` where the direction is not found.
     fn direction_beyond(
         &mut self,
         problem: &mut dyn Problem,
@@ -82,16 +82,21 @@ impl Continuation {
         probe: &[f64],
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<bool>> {
-        metric.unit(&self.current.tangent, &mut self.row);
-        let found = self
-            .corrector
-            .direction_at(problem, probe, &self.row, metric, &mut self.scratch, interrupt)?;
-        metric.unit(&self.scratch, &mut self.row);
+        metric.unit(&self.current.tangent, &mut self.memory.row);
+        let found = self.corrector.direction_at(
+            problem,
+            probe,
+            &self.memory.row,
+            metric,
+            &mut self.memory.scratch,
+            interrupt,
+        )?;
+        metric.unit(&self.memory.scratch, &mut self.memory.row);
         Ok(found)
     }
 
-    /// A point beyond the current one along the row of the plane, from which the branch goes on in that direction;
-    /// with the sign of the bordered determinant kept if `keeps_sense`.
+    /// A point beyond the current one along the row, from which the branch continues in that direction; with the sign
+    /// of the bordered determinant kept if `keeps_sense`.
     fn beyond_corner(
         &mut self,
         problem: &mut dyn Problem,
@@ -100,14 +105,14 @@ impl Continuation {
         (step, keeps_sense): (f64, bool),
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Point>> {
-        let n = self.row.len() - 1;
+        let n = self.memory.row.len() - 1;
         for factor in [2.0, 8.0, 32.0] {
             let length = factor * step;
             let mut v = try_copy(from, CONTEXT)?;
-            metric.add(&mut v, length, &self.row);
+            metric.add(&mut v, length, &self.memory.row);
             let outcome = self
                 .corrector
-                .correct(problem, &mut v, &self.row, metric, false, interrupt)?;
+                .correct(problem, &mut v, &self.memory.row, metric, false, interrupt)?;
             let Outcome::Converged(corrected) = outcome else {
                 continue;
             };
@@ -119,12 +124,12 @@ impl Continuation {
             let turned = if keeps_sense {
                 point.positive != self.current.positive
             } else {
-                along(&point, &mut self.scratch, &self.row) < 0.0
+                along(&point, &mut self.memory.scratch, &self.memory.row) < 0.0
             };
             if turned {
                 point.reverse();
             }
-            let along = along(&point, &mut self.scratch, &self.row);
+            let along = along(&point, &mut self.memory.scratch, &self.memory.row);
             let near = metric.distance(&point.v, &self.current.v) <= 3.0 * length;
             if along >= ALONG && near && self.overshoot(point.v[n]).is_none() {
                 return Ok(Some(point));
@@ -133,16 +138,17 @@ impl Continuation {
         Ok(None)
     }
 
-    /// The next point beyond a corner that the branch reaches along the surface of the event, where no step in its
-    /// direction crosses that: friction in a plane, whose slider at rest is held by two circles that cease to meet. The
-    /// linearisation is taken at other parameters, and its sense is that in which a point is found; straight back is none.
+    /// The next point beyond a corner that the branch reaches along the surface of an event, where no step in its
+    /// direction crosses that surface: friction in a plane, whose sticking slider is held by two circles that cease
+    /// to meet. The linearisation is taken at other parameters. Its sense is the one in which a point is found,
+    /// straight back excepted.
     fn leave_along_surface(
         &mut self,
         problem: &mut dyn Problem,
         metric: Metric,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Point>> {
-        let n = self.row.len() - 1;
+        let n = self.memory.row.len() - 1;
         let here = try_copy(&self.current.v, CONTEXT)?;
         for length in BESIDE_SURFACE {
             for side in [length, -length] {
@@ -157,10 +163,10 @@ impl Continuation {
                         && let Some(point) = self.beyond_corner(problem, metric, &here, (length, false), interrupt)?
                     {
                         self.steps.restart(length);
-                        self.left_surface = true;
+                        self.surfaces.left = true;
                         return Ok(Some(point));
                     }
-                    for r in &mut self.row {
+                    for r in &mut self.memory.row {
                         *r = -*r;
                     }
                 }
@@ -169,9 +175,10 @@ impl Continuation {
         Ok(None)
     }
 
-    /// The next point beyond a corner at which the branch has a direction on one side only near the corner itself: where circles that hold
-    /// a slider at rest cease to meet, its place goes with the root of the distance in the parameter, and the linearisation beside the
-    /// corner, on either side, tells the direction from which the branch came.
+    /// The next point beyond a corner at which the branch has a direction on one side only near the corner itself.
+    /// Where two circles that hold a sticking slider cease to meet, its position changes with the root of the
+    /// distance in the parameter, and the linearisation beside the corner, on either side, shows the direction from
+    /// which the branch came.
     ///
     /// A point at another parameter, solved for from the corner, is on the branch beyond if the branch there leads straight away from the
     /// corner, and not back to where it came from.
@@ -181,23 +188,23 @@ impl Continuation {
         metric: Metric,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Point>> {
-        let n = self.row.len() - 1;
+        let n = self.memory.row.len() - 1;
         let sense = (self.settings.end - self.settings.start).signum() * metric.p;
         for length in BESIDE_SURFACE {
             for (change, depth) in SIDES_AND_DEPTHS.map(|(side, depth)| (side * length, depth * length)) {
                 let mut v = try_copy(&self.current.v, CONTEXT)?;
-                metric.unit(&self.current.tangent, &mut self.row);
-                metric.add(&mut v, depth, &self.row);
+                metric.unit(&self.current.tangent, &mut self.memory.row);
+                metric.add(&mut v, depth, &self.memory.row);
                 let at = self.current.v[n] + sense * change;
                 v[n] = at;
                 if self.overshoot(at).is_some() {
                     continue;
                 }
-                self.row.fill(0.0);
-                self.row[n] = 1.0;
+                self.memory.row.fill(0.0);
+                self.memory.row[n] = 1.0;
                 let outcome = self
                     .corrector
-                    .correct(problem, &mut v, &self.row, metric, false, interrupt)?;
+                    .correct(problem, &mut v, &self.memory.row, metric, false, interrupt)?;
                 let Outcome::Converged(corrected) = outcome else {
                     continue;
                 };
@@ -214,7 +221,7 @@ impl Continuation {
                         point.reverse();
                     }
                     self.steps.restart(length);
-                    self.left_surface = true;
+                    self.surfaces.left = true;
                     return Ok(Some(point));
                 }
             }
@@ -222,21 +229,21 @@ impl Continuation {
         Ok(None)
     }
 
-    /// Cosine between the row of the plane and the direction at the current point.
+    /// Cosine of the angle between the row and the direction at the current point.
     fn onwards(&self, metric: Metric) -> Result<f64> {
         let row = self.unscaled_row(metric)?;
         Ok(metric.dot(&row, &self.current.tangent) / metric.norm(&self.current.tangent))
     }
 
-    /// The row of the plane in unscaled numbers.
+    /// The row that defines the plane of the correction, in unscaled numbers.
     fn unscaled_row(&self, metric: Metric) -> Result<Vec<f64>> {
-        let mut row = try_copy(&self.row, CONTEXT)?;
+        let mut row = try_copy(&self.memory.row, CONTEXT)?;
         metric.unscale(&mut row);
         Ok(row)
     }
 
-    /// The next point beyond a corner that is wider than [`CORNER_STEP`], or within which rounding hides the direction
-    /// of the branch: that of contacts which are nearly rigid.
+    /// The next point beyond a corner that is wider than [`CORNER_STEP`], or within which rounding hides the
+    /// direction of the branch, as with contacts that are nearly rigid.
     pub(super) fn leave_corner(
         &mut self,
         problem: &mut dyn Problem,
@@ -251,7 +258,7 @@ impl Continuation {
                 return Ok(Some(point));
             }
         }
-        if self.leaves_surfaces && !self.left_surface {
+        if self.surfaces.may_leave && !self.surfaces.left {
             if let Some(point) = self.leave_along_surface(problem, metric, interrupt)? {
                 return Ok(Some(point));
             }

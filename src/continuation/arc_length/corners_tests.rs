@@ -10,8 +10,8 @@ use crate::linalg::newton::linear_system::Jacobian;
 use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
 use num_complex::Complex64;
 
-/// A motion z that the parameter p leads to a stop at 0, whose impulse q = k max(z, 0)^(3/2) is that of a short contact:
-/// z + c q = p. Beyond the stop the branch goes along (0, 1, c) in (z, q, p), but for z = (q/k)^(2/3).
+/// A motion z driven by the parameter p against a stop at 0, with the impulse q = k max(z, 0)^(3/2) of a short
+/// contact: z + c q = p. Beyond the stop the branch goes along (0, 1, c) in (z, q, p), but for z = (q/k)^(2/3).
 struct Grazing {
     stiffness: f64,
     compliance: f64,
@@ -56,7 +56,7 @@ impl Problem for Grazing {
     }
 }
 
-/// The point at which the branch leaves the range from −1 to 1, and whether at its end.
+/// The point at which the branch leaves the range from −1 to 1, and whether that is the end of the range.
 fn followed(stiffness: f64, compliance: f64) -> (Point, bool) {
     let mut problem = Grazing {
         stiffness,

@@ -24,26 +24,26 @@ const CONTRACTION_LARGEST: f64 = 100.0;
 /// Kind: tuned; measured on: not recorded.
 const MOST_FORESEEN: usize = 20;
 
-/// Relative residual, and length of the step from there over the motion.
+/// Relative residual, and length of the Newton step from this point over the motion.
 pub(super) type Sizes = [f64; 2];
 
-/// Contraction of Newton's method along a branch.
+/// Contraction rates of Newton's method along a branch, by which the end of a correction is foreseen.
 #[derive(Clone, Copy)]
 pub(super) struct Contraction {
-    /// q and p as measured last.
+    /// Rates q and p as measured last.
     rates: Sizes,
-    /// Ends foreseen since.
+    /// Number of ends foreseen since the last measurement.
     foreseen: usize,
 }
 
 impl Contraction {
-    /// That of a branch of which nothing is known.
+    /// Rates before anything was measured: infinite.
     pub const UNKNOWN: Self = Self {
         rates: [f64::INFINITY; 2],
         foreseen: 0,
     };
 
-    /// Takes the sizes before and behind a step.
+    /// Measures the rates from the sizes before and after a step.
     pub fn measure(&mut self, before: Sizes, behind: Sizes) {
         *self = Self {
             rates: from_fn(|i| behind[i] / (before[i] * before[i])),
@@ -51,7 +51,8 @@ impl Contraction {
         };
     }
 
-    /// Bound of the residual behind a step; `None` where it is not known to be within the tolerance, or not the step from there.
+    /// Bound of the residual after a step; `None` where the residual, or the step that would follow, may exceed the
+    /// tolerance.
     pub fn foresee(&mut self, sizes: Sizes, tolerance: f64) -> Option<f64> {
         let bounds: Sizes = from_fn(|i| CONTRACTION_MARGIN * self.rates[i].max(1.0) * sizes[i] * sizes[i]);
         // A comparison with NaN is false.
@@ -90,7 +91,7 @@ mod tests {
         };
         let range = (0.1, 0.6);
         let condensed = Condensed::new(model, &options, range, &interrupt).unwrap();
-        let mut problem = HarmonicBalance::new(&condensed, 8, range, samples, None, &interrupt).unwrap();
+        let mut problem = HarmonicBalance::new(&condensed, 8, range.into(), samples, None, &interrupt).unwrap();
         let n = problem.unknowns();
         let mut exact = Corrector::new(n, TOLERANCE, 30).unwrap();
         let mut quick = Corrector::new(n, TOLERANCE, 30).unwrap();

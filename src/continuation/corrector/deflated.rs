@@ -59,7 +59,7 @@ impl Corrector {
             let mut along = 0.0;
             for u in known {
                 let (mut square, mut dot) = (0.0, 0.0);
-                for ((v, u), step) in v[..n].iter().zip(u).zip(&self.step) {
+                for ((v, u), step) in v[..n].iter().zip(u).zip(&self.memory.step) {
                     square += (v - u) * (v - u);
                     dot += (v - u) * step * metric.u;
                 }
@@ -74,7 +74,7 @@ impl Corrector {
                 bound
             };
             self.steps_taken += 1;
-            metric.add(v, factor, &self.step);
+            metric.add(v, factor, &self.memory.step);
         }
         Ok(false)
     }

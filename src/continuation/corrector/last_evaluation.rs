@@ -26,8 +26,8 @@ const LAST_EVALUATION_SMALL: f64 = 1e-5;
 const LAST_EVALUATION_MOST_ROUNDS: usize = 3;
 
 impl Corrector {
-    /// Solves for the last Newton step, in `step`, and for the tangent, in `next`, by the factors of the iteration before, whose
-    /// step had this length over the motion. `false` where new ones are needed.
+    /// Solves for the last Newton step, in `step`, and the tangent, in `next`, with the factors of the iteration
+    /// before, whose step had this length over the motion. `false` where new factors are needed.
     pub(super) fn ends_by_earlier_factors(
         &mut self,
         problem: &mut dyn Problem,
@@ -44,52 +44,62 @@ impl Corrector {
             return Ok(false);
         }
         self.negate_residual();
-        if !self.system.solve(problem, TANGENT_ERROR, &mut self.step, interrupt)? {
+        if !self
+            .system
+            .solve(problem, TANGENT_ERROR, &mut self.memory.step, interrupt)?
+        {
             return Ok(false);
         }
-        let is_near = norm(&self.step[..n]) * metric.u <= NEAR * norm(&v[..n]);
+        let is_near = norm(&self.memory.step[..n]) * metric.u <= NEAR * norm(&v[..n]);
         Ok(is_near && self.refine_tangent(problem, (metric, row), interrupt)?)
     }
 
-    /// The tangent of the current matrix in `next`, by the factors of an earlier one.
+    /// Computes the tangent of the current matrix in `next` by iteration with the factors of an earlier one; `false`
+    /// where that does not converge.
     fn refine_tangent(
         &mut self,
         problem: &mut dyn Problem,
         (metric, row): (Metric, &[f64]),
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
-        let n = self.next.len() - 1;
-        self.next.fill(0.0);
-        self.next[n] = 1.0;
-        if !self.system.solve(problem, TANGENT_ERROR, &mut self.next, interrupt)? {
+        let n = self.memory.next.len() - 1;
+        self.memory.next.fill(0.0);
+        self.memory.next[n] = 1.0;
+        if !self
+            .system
+            .solve(problem, TANGENT_ERROR, &mut self.memory.next, interrupt)?
+        {
             return Ok(false);
         }
-        let size = norm(&self.next);
+        let size = norm(&self.memory.next);
         let mut last = size;
         for round in 0..LAST_EVALUATION_MOST_ROUNDS {
-            let (unknowns, along) = (&mut self.trial[..n], metric.p * self.next[n]);
-            for (scaled, x) in unknowns.iter_mut().zip(&self.next) {
+            let (unknowns, along) = (&mut self.memory.trial[..n], metric.p * self.memory.next[n]);
+            for (scaled, x) in unknowns.iter_mut().zip(&self.memory.next) {
                 *scaled = metric.u * x;
             }
-            if !problem.multiply_here(unknowns, &mut self.change[..n])? {
+            if !problem.multiply_here(unknowns, &mut self.memory.change[..n])? {
                 return Ok(false);
             }
-            for (change, r) in self.change.iter_mut().zip(&self.at.d_parameter) {
+            for (change, r) in self.memory.change.iter_mut().zip(&self.at.d_parameter) {
                 *change = -(*change + r * along);
             }
-            let on_row: f64 = row.iter().zip(&self.next).map(|(t, x)| t * x).sum();
-            self.change[n] = 1.0 - on_row;
-            if !self.system.solve(problem, TANGENT_ERROR, &mut self.change, interrupt)? {
+            let on_row: f64 = row.iter().zip(&self.memory.next).map(|(t, x)| t * x).sum();
+            self.memory.change[n] = 1.0 - on_row;
+            if !self
+                .system
+                .solve(problem, TANGENT_ERROR, &mut self.memory.change, interrupt)?
+            {
                 return Ok(false);
             }
-            let change = norm(&self.change);
+            let change = norm(&self.memory.change);
             let largest = if round == 0 { LARGEST_CHANGE * size } else { 0.2 * last };
             // A comparison with NaN is false.
             let shrinks = change <= largest || change <= TANGENT_ERROR * size;
             if !shrinks {
                 return Ok(false);
             }
-            for (x, change) in self.next.iter_mut().zip(&self.change) {
+            for (x, change) in self.memory.next.iter_mut().zip(&self.memory.change) {
                 *x += change;
             }
             // The remaining error is the change times the shrinkage once more.

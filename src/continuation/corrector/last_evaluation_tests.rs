@@ -54,7 +54,7 @@ impl Problem for Counting<'_> {
 
 const METRIC: Metric = Metric { u: 1.0, p: 0.5 };
 
-/// A correction from `start` at its parameter, and the evaluations that took no matrix.
+/// A correction from `start` at the parameter of `start`, and the number of evaluations without a matrix.
 fn corrected(problem: &mut Counting<'_>, start: &[f64], may_end_early: bool) -> Option<(Vec<f64>, Corrected, usize)> {
     let n = start.len() - 1;
     let mut corrector = Corrector::new(n, 1e-10, 20).unwrap();
@@ -93,7 +93,7 @@ fn points_and_tangents_are_those_of_new_factors() {
         let range = (0.1, 0.6);
         let condensed = Condensed::new(&model, &options, range, &interrupt).unwrap();
         let mut problem = Counting {
-            problem: HarmonicBalance::new(&condensed, 8, range, 0, None, &interrupt).unwrap(),
+            problem: HarmonicBalance::new(&condensed, 8, range.into(), 0, None, &interrupt).unwrap(),
             evaluations: 0,
             matrices: 0,
         };

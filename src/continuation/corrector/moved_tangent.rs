@@ -29,7 +29,8 @@ const MOVED_TANGENT_SMALL: f64 = 1e-6;
 const MOVED_TANGENT_NEGLIGIBLE: f64 = 1e-9;
 
 impl Corrector {
-    /// Weights of the matrix here and of those at the points before in K′; `None` where they are not of one branch.
+    /// Weights of the current matrix and of those at the two points before in the slope K′; `None` where they do not
+    /// belong to one branch.
     pub(super) fn slope_weights(&self, metric: Metric, row: &[f64]) -> Option<[f64; 3]> {
         let [here, before, oldest] = &self.matrices_at;
         let way = |from: &[f64], to: &[f64]| {
@@ -37,8 +38,9 @@ impl Corrector {
             (way > MOVED_TANGENT_ALONG * metric.distance(from, to)).then_some(way)
         };
         // Near-rigid contacts have matrices whose rounding would be amplified.
-        let is_small =
-            |last: &f64| (MOVED_TANGENT_NEGLIGIBLE * last..=MOVED_TANGENT_SMALL * last).contains(&norm(&self.step));
+        let is_small = |last: &f64| {
+            (MOVED_TANGENT_NEGLIGIBLE * last..=MOVED_TANGENT_SMALL * last).contains(&norm(&self.memory.step))
+        };
         let last = way(before, here).filter(|last| is_small(last) && self.at.rounding == 0.0)?;
         let slope = [1.0 / last, -1.0 / last, 0.0];
         let Some(first) = way(oldest, before).filter(|first| *first > APART * last) else {
@@ -89,7 +91,7 @@ mod tests {
         };
         let range = (0.1, 0.6);
         let condensed = Condensed::new(&model, &options, range, &interrupt).unwrap();
-        let mut problem = HarmonicBalance::new(&condensed, 8, range, 0, None, &interrupt).unwrap();
+        let mut problem = HarmonicBalance::new(&condensed, 8, range.into(), 0, None, &interrupt).unwrap();
         let n = problem.unknowns();
         // A loose tolerance, so that steps from points beside the branch are far above rounding.
         let (mut exact, mut quick) = (

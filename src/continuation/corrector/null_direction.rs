@@ -72,19 +72,19 @@ impl Corrector {
         }
         for _ in 0..NULL_DIRECTION_MAX_ITERATIONS {
             interrupt.check()?;
-            self.step.copy_from_slice(&last);
+            self.memory.step.copy_from_slice(&last);
             if !self.solve(problem, (metric, row), TANGENT_ERROR, interrupt)? {
                 return Ok(None);
             }
-            self.step[n] = 0.0;
-            let size = norm(&self.step);
+            self.memory.step[n] = 0.0;
+            let size = norm(&self.memory.step);
             if !(size > 0.0 && size.is_finite()) {
                 return Ok(None);
             }
-            let cosine = dot(&self.step, &last) / size;
+            let cosine = dot(&self.memory.step, &last) / size;
             let scale = 1.0 / size.copysign(cosine);
             let mut change = 0.0_f64;
-            for (x, s) in last.iter_mut().zip(&self.step) {
+            for (x, s) in last.iter_mut().zip(&self.memory.step) {
                 let next = s * scale;
                 change = change.hypot(next - *x);
                 *x = next;

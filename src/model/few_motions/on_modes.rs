@@ -29,17 +29,18 @@ const CONTEXT: &str = "the model on modes";
 pub(crate) struct ShapesOfWaves {
     /// Independent degrees of freedom of the contacts, ascending.
     pub held: Vec<usize>,
-    /// By nodal diameter 0 ..= N/2, of which the other sense has the conjugate shapes; `None` where no perturbation has it.
+    /// Shapes by nodal diameter 0 ..= N/2; the waves of the other sense have the conjugate shapes. `None` where no
+    /// perturbation has the diameter.
     shapes: Vec<Option<StuckShapes>>,
-    /// Number of shapes in each that come from forces, or modes in their place.
+    /// Number of shapes of each diameter that come from forces, or modes in their place.
     loads: usize,
-    /// Number of modes that were requested of each.
+    /// Number of modes that were requested for each diameter.
     requested: usize,
 }
 
-/// The model on a number of modes.
+/// A model reduced to its contacts' degrees of freedom and some modes.
 pub(crate) struct OnModes {
-    /// The model, without forces.
+    /// The reduced model, without forces.
     pub model: Model,
     of: Arc<ShapesOfWaves>,
     /// The shapes by nodal diameter.
@@ -98,18 +99,18 @@ impl ShapesOfWaves {
         self.shapes.iter().flatten()
     }
 
-    /// Number of modes that every diameter has.
+    /// Number of modes available for every diameter.
     pub fn modes(&self) -> usize {
         let least = self.all().map(StuckShapes::modes).min().unwrap_or(0);
         least.saturating_sub(self.loads)
     }
 
-    /// Whether some diameter has no more modes.
+    /// Whether some diameter has no further modes.
     pub fn is_complete(&self) -> bool {
         self.modes() < self.requested
     }
 
-    /// Largest number of modes of a diameter below an angular frequency.
+    /// Largest number of modes of one diameter below an angular frequency.
     pub fn modes_below(&self, omega: f64) -> usize {
         let below = |shapes: &StuckShapes| shapes.omega.iter().filter(|&&x| x < omega).count();
         self.all().map(below).max().unwrap_or(0)
@@ -139,7 +140,7 @@ fn is_own_mirror(structure: &Structure, diameter: usize) -> bool {
     (2 * diameter).is_multiple_of(structure.sectors())
 }
 
-/// Amplitudes of the forces on the independent degrees of freedom, harmonic by harmonic.
+/// Amplitudes of the forces on the independent degrees of freedom, with their harmonics.
 pub(crate) fn forces_of_harmonics(model: &Model) -> Result<Vec<(usize, Vec<Complex64>)>> {
     let mut found: Vec<(usize, Vec<Complex64>)> = Vec::new();
     for f in model.excitation().forces() {
@@ -153,7 +154,8 @@ pub(crate) fn forces_of_harmonics(model: &Model) -> Result<Vec<(usize, Vec<Compl
     Ok(found)
 }
 
-/// The same, each with its nodal diameter in place of the harmonic, for the wave in which sector s + 1 lags.
+/// Amplitudes of the forces on the independent degrees of freedom, with their nodal diameters, for the wave in which
+/// sector s + 1 lags.
 fn forces_of_waves(model: &Model) -> Result<Vec<(usize, Vec<Complex64>)>> {
     let mut found = forces_of_harmonics(model)?;
     for (number, force) in &mut found {
@@ -169,7 +171,7 @@ fn forces_of_waves(model: &Model) -> Result<Vec<(usize, Vec<Complex64>)>> {
 }
 
 impl OnModes {
-    /// `model` on the first `modes` modes of each diameter.
+    /// Reduces `model` to its contacts' degrees of freedom and the first `modes` modes of each diameter.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
@@ -216,12 +218,13 @@ impl OnModes {
         })
     }
 
-    /// Number of modes of each diameter.
+    /// Number of modes used for each diameter.
     pub fn modes(&self) -> usize {
         self.model.structure().ndof() - self.of.held.len() - self.of.loads
     }
 
-    /// The shapes of a harmonic, the matrices of its nodal diameter, and whether it is the conjugate wave.
+    /// Shapes and matrices for the nodal diameter of a harmonic; and whether the harmonic belongs to the conjugate
+    /// wave.
     fn wave(&self, harmonic: usize) -> Result<(&ShapeBasis, &StuckShapes, bool)> {
         let structure = self.model.structure();
         let (diameter, backward) = structure.wave_of(harmonic);
@@ -231,7 +234,7 @@ impl OnModes {
         }
     }
 
-    /// The forces of `model` on the coordinates of this sector: harmonics and amplitudes, all coordinates each.
+    /// The forces of `model` on the coordinates of this sector: each harmonic with the amplitudes of all coordinates.
     pub fn forces(&self, model: &Model) -> Result<Vec<(usize, Vec<Complex64>)>> {
         let mut found = forces_of_harmonics(model)?;
         for (harmonic, force) in &mut found {
@@ -243,7 +246,7 @@ impl OnModes {
         Ok(found)
     }
 
-    /// Harmonics of the coordinates from those of the independent degrees of freedom, harmonic by harmonic.
+    /// Turns harmonics of the independent degrees of freedom into those of the coordinates, harmonic by harmonic.
     pub fn coordinates(&self, n: usize, harmonics: &[Complex64]) -> Result<Vec<Complex64>> {
         let order = self.model.structure().ndof();
         let mut found = try_vec(harmonics.len() / n * order, Complex64::ZERO, CONTEXT)?;
@@ -256,7 +259,7 @@ impl OnModes {
         Ok(found)
     }
 
-    /// Harmonics of the independent degrees of freedom from those of the coordinates.
+    /// Turns harmonics of the coordinates into those of the independent degrees of freedom.
     pub fn motion(&self, n: usize, coordinates: &[Complex64]) -> Result<Vec<Complex64>> {
         let order = self.model.structure().ndof();
         let mut found = try_vec(coordinates.len() / order * n, Complex64::ZERO, CONTEXT)?;
@@ -269,8 +272,8 @@ impl OnModes {
     }
 }
 
-/// Adds the matrices of the other senses, which are the conjugates, where a matrix is not Hermitian: it could be taken for
-/// that of a loss, whose other sense is the transpose.
+/// Adds the matrices for the other sense of travel, which are the conjugates, where a matrix is not Hermitian:
+/// otherwise it could be taken for a loss, whose matrix for the other sense is the transpose.
 fn add_other_senses(diameters: &mut Vec<Option<KeptMatrix>>, sectors: usize) -> Result<()> {
     let has_symmetry = |a: &KeptMatrix| a.worst_pair(Symmetry::Hermitian).2 <= ON_MODES_HERMITIAN * a.max_abs();
     if diameters.iter().flatten().all(has_symmetry) {
@@ -288,8 +291,8 @@ fn add_other_senses(diameters: &mut Vec<Option<KeptMatrix>>, sectors: usize) -> 
 }
 
 impl Structure {
-    /// A structure whose first independent degrees of freedom are those of `held`, with other matrices, in which all
-    /// damping and all stiffness is contained.
+    /// A structure of the given order whose first degrees of freedom are those of `held`, with the given matrices,
+    /// which contain all damping and stiffness.
     fn on_shapes(&self, held: &[usize], order: usize, blocks: [Blocks; KINDS]) -> Result<Self> {
         let mut small = Self::new(order, self.sectors())?;
         small.degrees = self.degrees().retaining(held, order)?;

@@ -12,12 +12,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 const CONTEXT: &str = "the reduced structure";
 
-/// Row of a motion over the coordinates of a harmonic.
+/// Row that reads a motion from the coordinates of a harmonic.
 #[derive(Clone, Debug, Default)]
 pub struct MotionRow(Vec<(usize, Complex64)>);
 
 impl MotionRow {
-    /// The same row over the degrees of freedom.
+    /// The row itself, over the degrees of freedom as coordinates.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -29,7 +29,7 @@ impl MotionRow {
         Ok(Self(terms))
     }
 
-    /// The row of the motion under a force: xᴴ for a column x.
+    /// The row that reads the motion conjugate to a force: xᴴ for a column x.
     pub fn adjoint(column: &SparseVector) -> Result<Self> {
         let mut terms = Vec::new();
         for (p, z) in column {
@@ -38,28 +38,28 @@ impl MotionRow {
         Ok(Self(terms))
     }
 
-    /// Its entries: coordinate and coefficient.
+    /// Entries of the row: coordinate and coefficient.
     pub fn terms(&self) -> core::slice::Iter<'_, (usize, Complex64)> {
         self.0.iter()
     }
 
-    /// r·x
+    /// Motion r·x that the row reads from x.
     pub fn along(&self, x: &[Complex64]) -> Complex64 {
         self.0.iter().map(|&(p, a)| a * x[p]).sum()
     }
 }
 
-/// The basis, column after column, before its rotation.
+/// Columns of a basis, one after the other, before the rotation.
 #[derive(Debug)]
 pub enum Basis {
-    /// For a real structure.
+    /// Columns for a real structure.
     Real(Vec<f64>),
-    /// For a complex Hermitian one.
+    /// Columns for a complex Hermitian structure.
     Complex(Vec<Complex64>),
 }
 
 impl Basis {
-    /// The columns of a real basis; none of a complex one.
+    /// The columns of a real basis; empty for a complex one.
     pub fn into_real(self) -> Vec<f64> {
         match self {
             Self::Real(v) => v,
@@ -67,7 +67,7 @@ impl Basis {
         }
     }
 
-    /// The columns of a complex basis; none of a real one.
+    /// The columns of a complex basis; empty for a real one.
     pub fn into_complex(self) -> Vec<Complex64> {
         match self {
             Self::Complex(v) => v,
@@ -82,7 +82,7 @@ impl Basis {
         }
     }
 
-    /// Bytes that it takes.
+    /// Number of bytes of the columns.
     pub fn bytes(&self) -> usize {
         match self {
             Self::Real(v) => size_of_val(&v[..]),
@@ -91,89 +91,92 @@ impl Basis {
     }
 }
 
-/// Damping on the basis.
+/// Damping of a wave on its basis.
 #[derive(Debug)]
 pub enum WaveDamping {
-    /// α and β of C = αM + βK.
+    /// Factors α and β of C = αM + βK.
     Proportional(f64, f64),
-    /// Vᴴ C V, column after column, of the rotated basis; with α and β where the basis holds the images of C − αM − βK.
+    /// Matrix Vᴴ C V on the rotated basis, column after column; with α and β where the basis holds the images of C −
+    /// αM − βK.
     General(Vec<Complex64>, Option<(f64, f64)>),
 }
 
-/// Part of the images of the last block that the basis does not hold; see [`crate::linalg::iterative::block_krylov`].
+/// Part of the images of the last block that the basis cannot represent; see
+/// [`crate::linalg::iterative::block_krylov`].
 #[derive(Debug, Default)]
 pub struct Remainder {
-    /// First column of the last block.
+    /// Index of the first column of the last block.
     pub last: usize,
-    /// Gram matrix of the parts, mass before damping.
+    /// Gram matrix of the parts that the basis cannot represent: first of images by the mass, then by the damping.
     pub gram: Vec<Complex64>,
-    /// Relative error of solutions in the norm of A by rounding, a part that the basis leaves out, too.
+    /// Relative error of solutions in the norm of A by rounding, which acts like a part that the basis leaves out.
     pub solutions: f64,
     /// Relative error of the stiffness on the basis by rounding.
     pub products: f64,
 }
 
-/// The structure of a wave on its basis.
+/// Matrices of a wave on its basis.
 #[derive(Debug)]
 pub struct ReducedPencil {
-    /// σ
+    /// Shift σ of A = K + σM.
     pub shift: f64,
-    /// μ, descending frequency last.
+    /// Values μ of the mass on the basis, falling: the highest frequency is the last.
     pub values: Vec<f64>,
     /// Rotation of the basis, column after column.
     pub rotation: Vec<Complex64>,
-    /// Damping.
+    /// Damping on the rotated basis.
     pub damping: WaveDamping,
-    /// The part that the basis leaves out.
+    /// Part of the images that the basis cannot represent.
     pub remainder: Remainder,
 }
 
 impl ReducedPencil {
-    /// Number of coordinates.
+    /// Number of coordinates, the columns of the basis.
     #[must_use]
     pub fn order(&self) -> usize {
         self.values.len()
     }
 
-    /// Stiffness of a coordinate, without springs; that of one beyond the basis is 1, and it has no mass.
+    /// Stiffness of a coordinate, without springs. A coordinate beyond the basis has stiffness 1 and no mass.
     #[must_use]
     pub fn stiffness(&self, k: usize) -> f64 {
         self.values.get(k).map_or(1.0, |value| 1.0 - self.shift * value)
     }
 }
 
-/// The structure of a wave on its basis, with the basis.
+/// A wave of the structure reduced to a basis, with the basis.
 #[derive(Debug)]
 pub struct ReducedWave {
-    /// Wave by which it is known again, see [`WaveKey`].
+    /// Key by which the wave is recognised, see [`WaveKey`].
     pub key: WaveKey,
     /// Vectors whose flexibility the basis holds.
     pub inputs: Vec<SparseVector>,
     /// Matrices on the basis.
     pub pencil: ReducedPencil,
-    /// The basis.
+    /// The basis before its rotation.
     pub basis: Basis,
     /// Independent degrees of freedom of the structure.
     pub n: usize,
-    /// Columns up to which the basis was allowed to grow where its certificate was not met all the same, else 0.
+    /// Number of columns up to which the basis was allowed to grow, where it still did not meet its certificate; else
+    /// 0.
     pub refused_up_to: usize,
 }
 
-/// A wave: matrices that are equal have equal keys.
+/// Key of a wave: waves with equal matrices have equal keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WaveKey {
-    /// Waves per turn.
+    /// Number of waves per turn (nodal diameter).
     pub diameter: usize,
-    /// Whether it belongs to a mean motion whose matrices are others.
+    /// Whether the wave is a mean motion, whose matrices are different.
     pub mean: bool,
 }
 
-/// A reduced wave, or the one that travels against it.
+/// A reduced wave as a harmonic uses it, or the wave that travels the other way.
 #[derive(Clone, Debug)]
 pub struct ReducedView {
-    /// The wave.
+    /// The reduced wave that is used.
     pub wave: Arc<ReducedWave>,
-    /// Whether everything is conjugated.
+    /// Whether all its matrices and motions are conjugated.
     pub conjugated: bool,
 }
 
@@ -182,12 +185,12 @@ impl ReducedView {
         if self.conjugated { z.conj() } else { z }
     }
 
-    /// Matrices on the basis.
+    /// Matrices of the wave on its basis.
     pub fn pencil(&self) -> &ReducedPencil {
         &self.wave.pencil
     }
 
-    /// Damping between two coordinates.
+    /// Entry of the damping between two coordinates.
     pub fn damping(&self, i: usize, j: usize) -> Complex64 {
         let pencil = self.pencil();
         match &pencil.damping {
@@ -197,7 +200,7 @@ impl ReducedView {
         }
     }
 
-    /// A row over the coordinates with the same motion as one over the degrees of freedom.
+    /// Row over the coordinates that reads the motion of a given row over the degrees of freedom.
     pub fn row(&self, row: &Row) -> Result<MotionRow> {
         let mut terms = Vec::new();
         for (k, z) in self.product(&row.iter().flatten().copied())?.into_iter().enumerate() {
@@ -219,7 +222,7 @@ impl ReducedView {
         Ok(found)
     }
 
-    /// Coordinates of an input, in which everything of a conjugated wave is that of the wave itself.
+    /// Coordinates of an input vector. For a conjugated wave they are computed from the wave itself.
     pub fn coordinates(&self, input: &SparseVector) -> Result<Vec<Complex64>> {
         let mut found = self.product(&input.iter().map(|&(p, z)| (p, self.turned(z).conj())))?;
         for z in &mut found {
@@ -228,7 +231,7 @@ impl ReducedView {
         Ok(found)
     }
 
-    /// Σ aₚ (V Q)ₚ
+    /// Sum Σ aₚ (V Q)ₚ of rows of the rotated basis.
     fn product(&self, entries: &(impl Iterator<Item = (usize, Complex64)> + Clone)) -> Result<Vec<Complex64>> {
         let (order, n) = (self.pencil().order(), self.wave.n);
         let mut plain = try_vec(order, Complex64::ZERO, CONTEXT)?;
@@ -290,7 +293,7 @@ impl ReducedView {
 pub struct KeptWaves(Arc<Mutex<Vec<Arc<ReducedWave>>>>);
 
 impl KeptWaves {
-    /// The wave of a key.
+    /// The kept wave with a key; `None` if there is none.
     pub fn find(&self, key: WaveKey) -> Option<Arc<ReducedWave>> {
         let waves = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         waves.iter().find(|wave| wave.key == key).map(Arc::clone)
@@ -305,7 +308,7 @@ impl KeptWaves {
         Ok(())
     }
 
-    /// The same waves in a list of its own.
+    /// A separate list of the same waves.
     pub fn separate(&self) -> Result<Self> {
         let waves = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let mut own = Vec::new();
@@ -315,7 +318,7 @@ impl KeptWaves {
         Ok(Self(Arc::new(Mutex::new(own))))
     }
 
-    /// Bytes of all bases.
+    /// Number of bytes of all kept bases.
     pub fn bytes(&self) -> usize {
         let waves = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         waves.iter().map(|wave| wave.basis.bytes()).sum()

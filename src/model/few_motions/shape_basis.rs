@@ -12,11 +12,11 @@ const CONTEXT: &str = "the model on modes";
 
 /// The shapes, column after column.
 pub(crate) struct ShapeBasis {
-    /// Independent degrees of freedom.
+    /// Number of independent degrees of freedom.
     n: usize,
     /// Number of static shapes.
     fixed: usize,
-    /// Factor of the modal shapes, whose modal mass is its square.
+    /// Factor of the modal shapes: their modal mass is its square.
     scale: f64,
     columns: Vec<Complex64>,
 }
@@ -35,7 +35,7 @@ impl ShapeBasis {
         self.columns.chunks_exact(self.n)
     }
 
-    /// M, C or K on the shapes.
+    /// Matrix M, C or K projected on the shapes.
     pub fn projected(&self, which: MatrixKind, a: &Csc, interrupt: &Interrupt<'_>) -> Result<Csc> {
         let order = self.columns.len() / self.n;
         let mut entries = Vec::new();
@@ -56,7 +56,8 @@ impl ShapeBasis {
         Csc::from_triplets(order, order, entries)
     }
 
-    /// Forces on the coordinates from those on the independent degrees of freedom; `backward`: of the conjugate wave.
+    /// Forces on the coordinates, from forces on the independent degrees of freedom; `backward`: for the conjugate
+    /// wave.
     pub fn forces(&self, force: &[Complex64], backward: bool, out: &mut [Complex64]) {
         for (out, column) in out.iter_mut().zip(self.all()) {
             *out = if backward {
@@ -67,8 +68,8 @@ impl ShapeBasis {
         }
     }
 
-    /// Coordinates of the motion in the space of the shapes that is next to a motion; `held` has the degrees of freedom
-    /// of the contacts.
+    /// Coordinates of the motion, within the span of the shapes, that is nearest to a given motion; `held` lists the
+    /// degrees of freedom of the contacts.
     pub fn coordinates(
         &self,
         (mass, held): (&Csc, &[usize]),
@@ -91,7 +92,7 @@ impl ShapeBasis {
         Ok(())
     }
 
-    /// The motion of the independent degrees of freedom.
+    /// Motion of the independent degrees of freedom, from the coordinates.
     pub fn motion(&self, coordinates: &[Complex64], backward: bool, out: &mut [Complex64]) {
         out.fill(Complex64::ZERO);
         for (x, column) in coordinates.iter().zip(self.all()) {

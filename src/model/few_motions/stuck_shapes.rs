@@ -10,6 +10,7 @@
 use crate::error::{Result, check_memory, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::factors::shifted_inverse::Inverse;
+use crate::linalg::libraries::DMatrix;
 use crate::linalg::sparse_storage::definite::resists_all_motion;
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::linalg::{inner, remove};
@@ -18,7 +19,6 @@ use crate::model::few_motions::shape_basis::ShapeBasis;
 use crate::model::matrices::structure::MatrixKind;
 use crate::model::matrices::wave::Wave;
 use crate::model::natural_modes::linear_modes::ContactState;
-use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the modes of the stuck structure";
@@ -33,9 +33,9 @@ const STUCK_SHAPES_SHIFT: f64 = 1e-7;
 
 /// Shapes of one nodal diameter, column after column.
 pub(crate) struct StuckShapes {
-    /// Independent degrees of freedom.
+    /// Number of independent degrees of freedom.
     n: usize,
-    /// Static shapes in the order of the degrees of freedom of the contacts.
+    /// Static shapes, in the order of the contacts' degrees of freedom.
     fixed: Vec<Complex64>,
     /// Shapes under the forces of the model, then those from the modes in ascending order of frequency: orthonormal with
     /// the mass, without motion of the contacts.
@@ -48,8 +48,8 @@ pub(crate) struct StuckShapes {
 }
 
 impl StuckShapes {
-    /// The shapes of a nodal diameter with at most `modes` shapes from forces and modes; `held` has the independent
-    /// degrees of freedom of the contacts, `forces` the amplitudes of the forces of this diameter.
+    /// Computes the shapes of a nodal diameter, at most `modes` of them from forces and modes. `held` lists the
+    /// independent degrees of freedom of the contacts, `forces` the amplitudes of the forces of this diameter.
     ///
     /// # Errors
     /// `NotHermitian` for a stiffness without modes; those of the eigensolvers; `OutOfMemory`; `StoppedByCaller`.
@@ -111,7 +111,8 @@ impl StuckShapes {
         self.modal.iter().fold(0.0_f64, |m, z| m.max(z.norm()))
     }
 
-    /// The shapes with the first `modal` modal ones, these times `scale`, and the static ones orthogonal to them.
+    /// A basis of the first `modal` modal shapes, multiplied by `scale`, and of the static shapes made orthogonal to
+    /// these.
     pub fn basis(&self, held: &[usize], modal: usize, scale: f64, interrupt: &Interrupt<'_>) -> Result<ShapeBasis> {
         let n = self.n;
         let modes = &self.modal[..modal * n];
@@ -134,7 +135,7 @@ impl StuckShapes {
         Ok(ShapeBasis::new(n, held.len(), scale, columns))
     }
 
-    /// M, C or K.
+    /// Matrix M, C or K of this nodal diameter.
     pub fn matrix(&self, which: MatrixKind) -> &Csc {
         match which {
             MatrixKind::Mass => &self.mass,
@@ -143,7 +144,8 @@ impl StuckShapes {
         }
     }
 
-    /// Appends what is new in a mode; of a real structure its real and its imaginary part.
+    /// Appends the part of a mode that is not in the span of the shapes yet; for a real structure its real and
+    /// imaginary parts.
     fn add_mode(
         &mut self,
         shape: &[Complex64],
@@ -194,7 +196,7 @@ impl StuckShapes {
     }
 }
 
-/// Factors of the stiffness, shifted where no stiffness resists some motion.
+/// Factors of the stiffness, shifted where some motion has no stiffness.
 fn stiffness_factors(k: &Csc, m: &Csc, interrupt: &Interrupt<'_>) -> Result<Inverse> {
     let diagonal = |a: &Csc| (0..k.rows).map(|i| a.get(i, i).re).sum::<f64>();
     let shift = if resists_all_motion(k, interrupt)? {
@@ -205,7 +207,8 @@ fn stiffness_factors(k: &Csc, m: &Csc, interrupt: &Interrupt<'_>) -> Result<Inve
     Inverse::new(k, (shift, m), interrupt)
 }
 
-/// Shapes of the structure at rest where one degree of freedom of the contacts is displaced and the others are held.
+/// Static shapes of the structure: in each, one degree of freedom of the contacts is displaced and the others are
+/// held.
 fn static_shapes(inverse: &mut Inverse, n: usize, held: &[usize], interrupt: &Interrupt<'_>) -> Result<Vec<Complex64>> {
     let count = held.len();
     check_memory::<Complex64>(2 * n * count + 3 * count * count, CONTEXT)?;

@@ -35,16 +35,16 @@ pub(crate) struct TunedFamily<'a> {
     motions: Vec<Motion>,
 }
 
-/// The matrices of a pattern over the modes of the tuned wheel, and what they change.
+/// Matrices of a mistuning pattern over the modes of the tuned wheel.
 pub(crate) struct ReducedMistuning {
-    /// Whether they change the mass; else the stiffness.
+    /// Whether the pattern changes the mass; else the stiffness.
     pub of_mass: bool,
     /// A column-major square matrix for each sector, one after the other.
     pub matrices: Vec<f64>,
 }
 
 impl<'a> TunedFamily<'a> {
-    /// The `families` lowest modes of each nodal diameter.
+    /// Computes the `families` lowest modes of each nodal diameter.
     ///
     /// # Errors
     /// `Unsupported` for a plain model and for waves whose senses differ; those of [`Model::lowest_modes`].
@@ -93,12 +93,12 @@ impl<'a> TunedFamily<'a> {
         Ok(Self { sector, motions })
     }
 
-    /// Number of modes.
+    /// Number of modes of the basis.
     pub fn len(&self) -> usize {
         self.motions.len()
     }
 
-    /// Squares of their angular frequencies, negative for motions that grow.
+    /// Squared angular frequencies of the modes; negative for motions that grow.
     pub fn squares(&self) -> impl Iterator<Item = f64> + '_ {
         self.motions.iter().map(|motion| motion.square)
     }
@@ -111,7 +111,8 @@ impl<'a> TunedFamily<'a> {
         motion.scale * if motion.is_imaginary { z.im } else { z.re }
     }
 
-    /// Motions of a degree of freedom of all sectors, in the numbers of the caller: one row for each sector, column-major.
+    /// Motions of a degree of freedom in all sectors, in the caller's numbering: one row for each sector,
+    /// column-major.
     ///
     /// # Errors
     /// `Argument` for a degree of freedom that does not move by itself.
@@ -130,7 +131,8 @@ impl<'a> TunedFamily<'a> {
         Ok(rows)
     }
 
-    /// VᵀdK_sV, or that of the mass, of each sector for δ_s = 1; for frequencies by the factor of the stiffness.
+    /// Matrices VᵀdK_sV, or VᵀdM_sV, of each sector for δ_s = 1; for a pattern of frequencies by the factor of the
+    /// stiffness.
     ///
     /// # Errors
     /// `Unsupported` for another quantity; those of [`Model::mistune`].
@@ -156,7 +158,7 @@ impl<'a> TunedFamily<'a> {
         Ok(ReducedMistuning { of_mass, matrices })
     }
 
-    /// Adds VᵀEV of the entries of sector 0, moved to sector s.
+    /// Adds VᵀEV to `a`, where E holds the entries of sector 0, moved to sector s.
     fn add_sector(&self, a: &mut [f64], s: usize, entries: &Entries, interrupt: &Interrupt<'_>) -> Result<()> {
         let structure = self.sector.structure();
         let (m, n) = (self.len(), structure.ndof());
@@ -196,8 +198,9 @@ impl<'a> TunedFamily<'a> {
     }
 }
 
-/// Adds the parts of a mode of a standing wave that are not there already: its phase is arbitrary, and so is the mixture of modes of
-/// one frequency, so that the real or the imaginary part may be rounding, or a motion of the mode before it.
+/// Adds those parts of a standing wave's mode that are not in the list already. The phase of the mode is arbitrary,
+/// as is the mixture of modes of one frequency, so that the real or the imaginary part may be rounding, or equal to a
+/// former mode.
 fn push_standing(
     motions: &mut Vec<Motion>,
     first: usize,

@@ -33,7 +33,7 @@ impl Model {
         Ok(())
     }
 
-    /// The aerodynamic influence of a form; `None` without.
+    /// The aerodynamic influence of a form; `None` if the model has none.
     #[must_use]
     pub fn aero(&self, form: AeroForm) -> Option<&AeroInfluence> {
         self.structure().aero()[form as usize].as_deref()
@@ -60,7 +60,7 @@ impl Model {
 }
 
 impl Structure {
-    /// Degrees of freedom and number of sectors.
+    /// Map of the degrees of freedom, and number of sectors.
     fn wheel(&self) -> (&DegreeMap, usize) {
         (self.degrees(), self.sectors())
     }

@@ -3,14 +3,14 @@
 use crate::error::{Result, try_push};
 use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
 
-/// One of M, C, K in the form in which it was given.
+/// One of the matrices M, C, K, … in the form in which the caller gave it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Blocks {
-    /// Rows and columns of the same sector.
+    /// Block with the rows and columns of one sector.
     pub own: Option<KeptMatrix>,
-    /// Rows of sector s, columns of s + 1.
+    /// Block with the rows of sector s and the columns of s + 1.
     pub next: Option<KeptMatrix>,
-    /// Rows of sector s, columns of s − 1; `None`: the transpose of `next`.
+    /// Block with the rows of sector s and the columns of s − 1; `None`: the transpose of `next`.
     pub previous: Option<KeptMatrix>,
     /// Matrices per nodal diameter by its residue modulo N, instead of blocks: 0 ..= N/2, or 0 .. N where one was given for a
     /// negative diameter.
@@ -18,7 +18,7 @@ pub(crate) struct Blocks {
 }
 
 impl Blocks {
-    /// The matrices that were given, in one order.
+    /// All matrices that were given, in a fixed order.
     pub fn parts(&self) -> impl Iterator<Item = &KeptMatrix> {
         [&self.own, &self.next, &self.previous]
             .into_iter()
@@ -26,7 +26,7 @@ impl Blocks {
             .flatten()
     }
 
-    /// A copy, allocated fallibly.
+    /// A copy that returns an error if memory is short.
     pub fn try_clone(&self) -> Result<Self> {
         let copy = |a: &Option<KeptMatrix>| a.as_ref().map(KeptMatrix::try_clone).transpose();
         let mut diameters = Vec::new();

@@ -18,14 +18,15 @@ const COMPLEX_STIFFNESS_ROUNDING: f64 = 1e-10;
 /// Kind: rounding.
 const PROPORTIONAL_LOSS: f64 = 1e-12;
 
-/// Factors c of (A + Bᴴ)/2 and (A − Bᴴ)/2i as cA + (cB)ᴴ.
+/// Factors c with which the parts (A + Bᴴ)/2 and (A − Bᴴ)/2i of a matrix are written as cA + (cB)ᴴ.
 const HERMITIAN_PART: Complex64 = Complex64::new(0.5, 0.0);
 const LOSS: Complex64 = Complex64::new(0.0, -0.5);
 
 impl Structure {
-    /// Whether the stiffness is complex and not Hermitian, but symmetric, so that what is not Hermitian in it dissipates. A
-    /// matrix per nodal diameter shows the symmetry in diameters that are their own mirror, and where that of −d was given,
-    /// which is then the transpose; of real sectors without symmetry it is the conjugate.
+    /// Whether the stiffness is complex and symmetric but not Hermitian, so that its part that is not Hermitian
+    /// dissipates. Matrices per nodal diameter show the symmetry in diameters that are their own mirror, and where
+    /// the matrix of −d was given: it is then the transpose, whereas with real sectors without symmetry it is the
+    /// conjugate.
     pub fn has_complex_stiffness(&self) -> bool {
         let blocks = &self.blocks[MatrixKind::Stiffness as usize];
         if self.parts(MatrixKind::Stiffness).all(KeptMatrix::is_real) {
@@ -66,8 +67,8 @@ impl Structure {
         ring(Symmetry::Plain) && !ring(Symmetry::Hermitian)
     }
 
-    /// Loss factor of the whole stiffness: the one that was given, and η of a complex stiffness H(1 + iη) with a Hermitian H. `None`
-    /// where a complex stiffness dissipates in another form.
+    /// Loss factor of the whole stiffness: the given one, plus η of a complex stiffness H(1 + iη) with Hermitian H.
+    /// `None` where a complex stiffness dissipates in another form.
     pub fn whole_loss_factor(&self) -> Result<Option<f64>> {
         if !self.has_complex_stiffness() {
             return Ok(Some(self.loss_factor()));
@@ -99,7 +100,7 @@ impl Structure {
         Ok(is_share.then_some(self.loss_factor() + eta))
     }
 
-    /// The stiffness of a wave without the structural damping in a complex one.
+    /// The stiffness of a wave without the loss that a complex stiffness contains.
     pub(crate) fn elastic(&self, stiffness: Csc) -> Result<Csc> {
         if stiffness.is_real() || !self.has_complex_stiffness() {
             return Ok(stiffness);
@@ -144,7 +145,7 @@ impl Model {
     }
 }
 
-/// Applies a split to the blocks; that of the coupling to the next sector has its mirror in that to the previous one.
+/// Splits all blocks of a matrix. The split block to the previous sector is the mirror of the one to the next sector.
 fn of_blocks(given: &Blocks, factor: Complex64) -> Result<Blocks> {
     let split = |a: &KeptMatrix, mirror: &KeptMatrix| KeptMatrix::new(combined(a, mirror, factor)?);
     let own = given.own.as_ref().map(|own| split(own, own)).transpose()?;
@@ -172,7 +173,7 @@ fn of_blocks(given: &Blocks, factor: Complex64) -> Result<Blocks> {
     })
 }
 
-/// cA + (cB)ᴴ with the mirror block B of A, which is A itself on the diagonal.
+/// Computes cA + (cB)ᴴ, where B is the mirror block of A, which is A itself on the diagonal.
 fn combined<A: Columns>(a: &A, mirror: &A, factor: Complex64) -> Result<Csc> {
     let n = a.columns();
     let mirrored = Csc::sum(n, &[(Complex64::ONE, mirror, Form::Transposed)])?;
@@ -186,7 +187,7 @@ fn combined<A: Columns>(a: &A, mirror: &A, factor: Complex64) -> Result<Csc> {
     )
 }
 
-/// Whether two matrices are the transposes of each other.
+/// Whether two matrices are transposes of each other.
 fn are_transposed(a: &KeptMatrix, b: &KeptMatrix) -> bool {
     let limit = COMPLEX_STIFFNESS_ROUNDING * a.max_abs().max(b.max_abs());
     let is_mirror = |a: &KeptMatrix, b: &KeptMatrix| {
@@ -230,7 +231,7 @@ fn added(n: usize, loss: &Blocks, given: &Blocks) -> Result<Blocks> {
     })
 }
 
-/// The coupling to the previous sector.
+/// The coupling block to the previous sector.
 fn before(blocks: &Blocks) -> Result<Option<KeptMatrix>> {
     match (&blocks.previous, &blocks.next) {
         (Some(previous), _) => previous.try_clone().map(Some),

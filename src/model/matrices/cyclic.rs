@@ -19,23 +19,24 @@ use num_complex::Complex64;
 /// Kind: rounding.
 const CYCLIC_HERMITIAN: f64 = 1e-10;
 
-/// Terms of a speed Ω = pω, which Z_h = … + ω² p²K₁ + ihω² pG contains.
+/// Matrices of a speed Ω = pω that is tied to the frequency: Z_h = … + ω² p²K₁ + ihω² pG.
 #[derive(Clone, Debug)]
 pub struct Tied {
-    /// p²K₁
+    /// p²K₁, the stiffness by the speed, over ω².
     pub stiffness: Csc,
-    /// pG
+    /// pG, the gyroscopic matrix, over ω.
     pub gyroscopic: Csc,
 }
 
 impl Structure {
-    /// Residue h·EO mod N in 0 .. N.
+    /// Residue h·EO mod N of a harmonic, in 0 .. N.
     fn residue(&self, harmonic: i64) -> usize {
         let n = self.sectors() as i128;
         (i128::from(harmonic) * i128::from(self.engine_order())).rem_euclid(n) as usize
     }
 
-    /// The wave of a harmonic as a key of equal matrices; `true` if they are the conjugates.
+    /// Key of the wave of a harmonic: waves with equal keys have equal matrices, or conjugate ones if `true` is
+    /// returned.
     pub(crate) fn wave_key(&self, harmonic: usize) -> (WaveKey, bool) {
         let mean = harmonic == 0;
         let residue = self.residue(harmonic as i64);
@@ -66,13 +67,13 @@ impl Structure {
         self.sectors() / divisor
     }
 
-    /// e^{−i·offset·hφ}: motion of sector s + offset over that of sector s, exact at quarter turns.
+    /// Phase factor e^{−i·offset·hφ}: motion of sector s + offset over that of sector s, exact at quarter turns.
     #[must_use]
     pub fn phase(&self, harmonic: usize, offset: i64) -> Complex64 {
         self.wave_phase(self.residue(harmonic as i64) as i64, offset)
     }
 
-    /// e^{−2πi·diameter·offset/N}: the same for the wave of `diameter` waves per turn.
+    /// Phase factor e^{−2πi·diameter·offset/N} for the wave of `diameter` waves per turn.
     pub fn wave_phase(&self, diameter: i64, offset: i64) -> Complex64 {
         let n = self.sectors() as i128;
         self.lag((i128::from(diameter) * i128::from(offset)).rem_euclid(n) as usize)
@@ -83,7 +84,7 @@ impl Structure {
         diameter.rem_euclid(self.sectors() as i64) as usize
     }
 
-    /// e^{−2πi·residue/N}
+    /// Phase factor e^{−2πi·residue/N} between neighbouring sectors.
     fn lag(&self, residue: usize) -> Complex64 {
         lag(residue, self.sectors())
     }
@@ -158,12 +159,13 @@ impl Structure {
         Csc::sum(self.ndof(), &terms)
     }
 
-    /// One matrix as it was given, for the wave in which sector s + 1 lags by 2π·diameter/N.
+    /// One matrix as the caller gave it, without derived parts, for the wave in which sector s + 1 lags by
+    /// 2π·diameter/N.
     pub(crate) fn given_of_diameter(&self, which: MatrixKind, diameter: usize) -> Result<Csc> {
         self.given(which, diameter % self.sectors(), false)
     }
 
-    /// The modal damping likewise.
+    /// The modal damping matrix for the wave in which sector s + 1 lags by 2π·diameter/N.
     pub(crate) fn modal_damping_of_diameter(&self, diameter: usize) -> Result<Csc> {
         match self.modal_damping_of(diameter % self.sectors(), false)? {
             Some(matrix) => Ok(matrix),
@@ -256,8 +258,8 @@ impl Structure {
         Ok(Some(Tied { stiffness, gyroscopic }))
     }
 
-    /// The matrix M_h of the inertia −h²ω²M_h, with the terms of a speed that is tied to the frequency, which grow with ω²,
-    /// too: M − p²K₁/h² − ipG/h. A nodal diameter is that of the fundamental; of the mean it is M.
+    /// Matrix M_h of the inertia −h²ω²M_h, with the terms of a speed tied to the frequency, which grow with ω², too:
+    /// M − p²K₁/h² − ipG/h. A nodal diameter is taken as one of the fundamental; for the mean the matrix is M.
     ///
     /// # Errors
     /// As [`Self::wave_matrix`].
@@ -279,7 +281,7 @@ impl Structure {
         Csc::sum(self.ndof(), &terms)
     }
 
-    /// The matrix of a wave.
+    /// Matrix of one kind for a wave.
     ///
     /// # Errors
     /// As [`Self::wave_matrix`].
@@ -290,7 +292,7 @@ impl Structure {
         }
     }
 
-    /// The matrix of the modal damping; `None` without such damping, or without modes of this diameter.
+    /// Modal damping matrix of a residue; `None` without such damping, or without modes of this diameter.
     fn modal_damping_of(&self, residue: usize, real: bool) -> Result<Option<Csc>> {
         let Some((matrix, form)) = self.of_residue(&self.modal_damping, residue) else {
             return Ok(None);
@@ -304,7 +306,7 @@ impl Structure {
         Ok(Some(matrix))
     }
 
-    /// The matrix of a residue in a list by residues, or that of the other sense, to be conjugated.
+    /// The matrix of a residue in a list by residues; or the matrix of the other sense, to be conjugated.
     fn of_residue<'a>(&self, list: &'a [Option<KeptMatrix>], residue: usize) -> Option<(&'a KeptMatrix, Form)> {
         let at = |residue: usize| list.get(residue).and_then(Option::as_ref);
         let other = (self.sectors() - residue) % self.sectors();
@@ -312,8 +314,8 @@ impl Structure {
         own.or_else(|| at(other).map(|a| (a, Form::Conjugated)))
     }
 
-    /// Refuses to conjugate a stiffness that no real matrices of sectors have: of a loss K(1 + iη), where A(−d) = A(d)ᵀ,
-    /// the imaginary part would drive the backward wave.
+    /// Refuses to conjugate a stiffness that does not follow from real matrices of the sectors: for a loss K(1 + iη),
+    /// where A(−d) = A(d)ᵀ, the imaginary part would drive the backward wave.
     fn check_backward(&self, which: MatrixKind, diameter: i64, matrix: &KeptMatrix) -> Result<()> {
         let which = match which {
             MatrixKind::Structural if self.loss_of_stiffness => MatrixKind::Stiffness,

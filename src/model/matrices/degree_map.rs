@@ -16,34 +16,34 @@ const CONTEXT: &str = "the map of the degrees of freedom";
 #[derive(Clone, Debug)]
 pub struct DegreeMap {
     given: usize,
-    /// `None`: every degree of freedom is independent.
+    /// Images of the degrees of freedom; `None`: all are independent.
     images: Option<Arc<Images>>,
 }
 
 /// Rows of T₀ and T₁, each with entries in one of them only.
 #[derive(Debug)]
 struct Images {
-    /// Offsets of the rows in `terms`, one more than degrees of freedom.
+    /// Start of each row in `terms`; one more number than degrees of freedom.
     start: Vec<usize>,
-    /// Independent degree of freedom and coefficient.
+    /// Terms of the rows: independent degree of freedom and coefficient.
     terms: Vec<(usize, f64)>,
-    /// The entries of the row lie in T₁.
+    /// For each row, whether its entries lie in T₁.
     next: Vec<bool>,
     /// The caller's number of each independent degree of freedom.
     origin: Vec<usize>,
     fixed: Vec<bool>,
     faces: Option<Faces>,
-    /// In a whole wheel the degrees of freedom of each of its sectors, whose faces these are.
+    /// In a whole wheel, the number of degrees of freedom of each sector, to which the faces belong; else `None`.
     wheel: Option<usize>,
 }
 
 impl DegreeMap {
-    /// The map of `given` independent degrees of freedom.
+    /// Map of `given` degrees of freedom that are all independent.
     pub(crate) fn identity(given: usize) -> Self {
         Self { given, images: None }
     }
 
-    /// Whether another map has the same independent degrees of freedom, with the same images.
+    /// Whether another map has the same independent degrees of freedom and the same images.
     pub fn is_same(&self, other: &Self) -> bool {
         self.given == other.given
             && match (&self.images, &other.images) {
@@ -61,8 +61,8 @@ impl DegreeMap {
         Self::with(fixed, faces, None)
     }
 
-    /// The map of all sectors of a wheel, one after another, each with so many degrees of freedom and these faces; others may stand
-    /// behind them.
+    /// Map of all sectors of a wheel, one after the other, each with `of_sector` degrees of freedom and these faces;
+    /// further degrees of freedom may follow them.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -144,7 +144,7 @@ impl DegreeMap {
         Self::new(marked(try_vec(given, false, CONTEXT)?, fixed)?, Some(faces))
     }
 
-    /// The same map with more degrees of freedom fixed.
+    /// A copy of this map with further degrees of freedom fixed.
     ///
     /// # Errors
     /// `Index`; `Argument` for a pair of the faces that is fixed on one side only, and where all are fixed.
@@ -153,7 +153,8 @@ impl DegreeMap {
         Self::with(marked(fixed, dofs)?, faces, wheel)
     }
 
-    /// Copies of the marks of fixed degrees of freedom and of the faces, and what they are of.
+    /// Copies of the marks of fixed degrees of freedom and of the faces; and the number of degrees of freedom of a
+    /// sector in a whole wheel.
     fn parts(&self) -> Result<(Vec<bool>, Option<Faces>, Option<usize>)> {
         let Some(images) = self.images.as_deref() else {
             return Ok((try_vec(self.given, false, CONTEXT)?, None, None));
@@ -162,7 +163,7 @@ impl DegreeMap {
         Ok((try_copy(&images.fixed, CONTEXT)?, faces, images.wheel))
     }
 
-    /// The same map with `count` independent degrees of freedom behind all others.
+    /// A copy of this map with `count` further independent degrees of freedom after all others.
     pub(crate) fn extended(&self, count: usize) -> Result<Self> {
         let Some(images) = self.images.as_deref() else {
             return Ok(Self::identity(self.given + count));
@@ -173,8 +174,8 @@ impl DegreeMap {
         Self::with(fixed, faces, images.wheel)
     }
 
-    /// The map onto `order` other independent degrees of freedom, the first of which are the given old ones; the images of
-    /// the others are empty.
+    /// Map onto `order` new independent degrees of freedom. The first ones are the old ones listed in `held`; the
+    /// images of all others are empty.
     pub(crate) fn retaining(&self, held: &[usize], order: usize) -> Result<Self> {
         let mut start = try_vec(1, 0, CONTEXT)?;
         let mut terms = Vec::new();
@@ -208,12 +209,12 @@ impl DegreeMap {
         })
     }
 
-    /// Degrees of freedom as the caller numbers them.
+    /// Number of degrees of freedom as the caller numbers them.
     pub fn given(&self) -> usize {
         self.given
     }
 
-    /// Independent degrees of freedom.
+    /// Number of independent degrees of freedom.
     pub fn independent(&self) -> usize {
         self.images.as_ref().map_or(self.given, |images| images.origin.len())
     }
@@ -223,25 +224,25 @@ impl DegreeMap {
         self.images.is_none()
     }
 
-    /// Marks of all degrees of freedom that do not move; `None` where every one is independent.
+    /// For each degree of freedom, whether it is fixed; `None` where all are independent.
     pub(crate) fn fixed(&self) -> Option<&[bool]> {
         self.images.as_ref().map(|images| &images.fixed[..])
     }
 
-    /// The faces of a sector.
+    /// The faces of a sector; `None` without faces.
     pub(crate) fn faces(&self) -> Option<&Faces> {
         let images = self.images.as_ref()?;
         images.faces.as_ref().filter(|_| images.wheel.is_none())
     }
 
-    /// The faces of the sectors of a whole wheel, and the degrees of freedom of one of them.
+    /// The faces of the sectors of a whole wheel, and the number of degrees of freedom of a sector.
     pub(crate) fn faces_of_wheel(&self) -> Option<(&Faces, usize)> {
         let images = self.images.as_ref()?;
         Some((images.faces.as_ref()?, images.wheel?))
     }
 
-    /// Image of a degree of freedom: the sector of the independent ones that move it, counted from its own, and their
-    /// numbers and coefficients. Empty for a fixed one.
+    /// Image of a degree of freedom: the sector of the independent ones that move it, counted from its own sector,
+    /// and their indices and coefficients. Empty for a fixed one.
     pub fn image(&self, dof: usize) -> (i64, impl Iterator<Item = (usize, f64)> + '_) {
         let (sector, own, terms) = match self.images.as_deref() {
             None => (0, Some((dof, 1.0)), &[][..]),
@@ -259,8 +260,7 @@ impl DegreeMap {
         self.images.as_ref().is_some_and(|images| images.fixed[dof])
     }
 
-    /// The number of a degree of freedom among the independent ones; `None` for a fixed one and for one on the right
-    /// face.
+    /// Index of a degree of freedom among the independent ones; `None` if it is fixed or on the right face.
     pub fn number(&self, dof: usize) -> Option<usize> {
         match self.images.as_deref() {
             None => Some(dof),
@@ -280,8 +280,8 @@ impl DegreeMap {
         }
     }
 
-    /// The motion of all degrees of freedom from that of the independent ones, where the next sector moves `next`
-    /// times as this one.
+    /// Motion of all degrees of freedom, from that of the independent ones; the motion of the next sector is `next`
+    /// times that of this one.
     pub fn expand(&self, next: Complex64, independent: &[Complex64], all: &mut [Complex64]) {
         let Some(images) = self.images.as_deref() else {
             all.copy_from_slice(independent);
@@ -294,7 +294,7 @@ impl DegreeMap {
         }
     }
 
-    /// The same in time, from the motions of this sector and the next one.
+    /// Motion of all degrees of freedom in time, from the independent motions of this sector and of the next one.
     pub fn expand_in_time(&self, own: &[f64], next: &[f64], all: &mut [f64]) {
         let Some(images) = self.images.as_deref() else {
             all.copy_from_slice(own);
@@ -307,7 +307,7 @@ impl DegreeMap {
         }
     }
 
-    /// The motion of the independent degrees of freedom out of that of all; those that depend on them are not read.
+    /// Motion of the independent degrees of freedom, taken from that of all; dependent ones are not read.
     pub fn restrict(&self, all: &[Complex64], independent: &mut [Complex64]) {
         for (j, x) in independent.iter_mut().enumerate() {
             *x = all[self.origin(j)];
@@ -315,7 +315,8 @@ impl DegreeMap {
     }
 }
 
-/// Refuses pairs of a wheel that can move on one side only: of the right face of each sector and the left one of the next.
+/// Refuses a pair of nodes in a wheel (right face of a sector, left face of the next) of which only one side is
+/// fixed.
 fn check_wheel(faces: &Faces, fixed: &[bool], n: usize) -> Result<()> {
     for s in 0..faces.sectors {
         let mut sides = try_copy(&fixed[s * n..(s + 1) * n], CONTEXT)?;
@@ -330,7 +331,7 @@ fn check_wheel(faces: &Faces, fixed: &[bool], n: usize) -> Result<()> {
     Ok(())
 }
 
-/// Marks degrees of freedom as fixed.
+/// Adds degrees of freedom to the marks of fixed ones.
 fn marked(mut fixed: Vec<bool>, dofs: &[usize]) -> Result<Vec<bool>> {
     let n = fixed.len();
     for (i, &dof) in dofs.iter().enumerate() {

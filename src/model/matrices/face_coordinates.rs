@@ -86,9 +86,9 @@ pub(crate) fn check_coordinates(
     Ok(())
 }
 
-/// A position about the axis.
+/// A position, by its part normal to the axis and along it.
 struct Polar {
-    /// The part normal to the axis.
+    /// Part of the position normal to the axis.
     normal: [f64; 3],
     radius: f64,
     height: f64,

@@ -25,7 +25,7 @@ pub enum AeroForm {
 /// Kind: fixed.
 pub(crate) const FORMS: usize = 2;
 
-/// Influence coefficients as they were given, checked.
+/// Influence coefficients as the caller gave them, after checks.
 #[derive(Clone, Debug)]
 pub struct AeroInfluence {
     dofs: Vec<usize>,
@@ -33,16 +33,16 @@ pub struct AeroInfluence {
     coefficients: Vec<Complex64>,
 }
 
-/// A coefficient.
+/// One influence coefficient.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AeroEntry {
     /// Degree of freedom of the force.
     pub force: usize,
     /// Degree of freedom of the motion.
     pub motion: usize,
-    /// Sector of the motion, counted from that of the force.
+    /// Sector of the motion, counted from the sector of the force.
     pub offset: i64,
-    /// Force per motion.
+    /// Coefficient: force per displacement or velocity.
     pub coefficient: Complex64,
 }
 
@@ -113,7 +113,7 @@ impl AeroInfluence {
         }))
     }
 
-    /// The coefficients, those of one offset after another, row after row.
+    /// The coefficients, offset after offset, row after row.
     #[must_use]
     pub fn entries(&self) -> impl ExactSizeIterator<Item = AeroEntry> + '_ {
         let n = self.dofs.len();

@@ -22,9 +22,9 @@ const MODAL_DAMPING_ROUNDING: f64 = 1e-16;
 const CONTEXT: &str = "the modal damping";
 
 impl Model {
-    /// Damps the lowest natural modes of each nodal diameter, without contacts but with springs, by given ratios ζ, in
-    /// the order of rising frequency. It replaces an earlier call; without ratios it removes the modal damping. The
-    /// matrices of mass and stiffness, springs and fixed degrees of freedom must be complete.
+    /// Damps the lowest natural modes of each nodal diameter by given ratios ζ, in the order of rising frequency;
+    /// these modes are without contacts but with springs. It replaces an earlier call; without ratios it removes the
+    /// modal damping. The matrices of mass and stiffness, springs and fixed degrees of freedom must be complete.
     ///
     /// # Errors
     /// `NotFinite` or `Argument` for a ratio out of range or without a mode; `Unsupported` for more than 2000 degrees
@@ -33,7 +33,7 @@ impl Model {
         self.set_modal_damping_with(ratios, &Interrupt::none())
     }
 
-    /// The same, and the caller may stop it.
+    /// Sets modal damping as `set_modal_damping` does, and the caller may stop it.
     ///
     /// # Errors
     /// As [`Self::set_modal_damping`]; `StoppedByCaller`.

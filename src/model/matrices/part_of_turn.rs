@@ -3,7 +3,8 @@
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// e^{−2πi·parts/sectors}, exact at quarter turns, and the conjugate number for as many parts less than a turn.
+/// Phase factor e^{−2πi·parts/sectors}, exact at quarter turns; for sectors − parts it is exactly the conjugate
+/// number.
 pub(crate) fn lag(parts: usize, sectors: usize) -> Complex64 {
     if parts < sectors && 2 * parts > sectors {
         return lag(sectors - parts, sectors).conj();

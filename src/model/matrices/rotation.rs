@@ -35,11 +35,11 @@ impl Model {
         self.structure().speed
     }
 
-    /// Sets the normal load of a contact at speed Ω to preload + per_speed2·Ω², for a ring damper of mass m at the
-    /// radius R with per_speed2 = mR.
+    /// Sets the normal load of a contact at speed Ω to preload + per_speed2·Ω². A ring damper of mass m at the radius
+    /// R has per_speed2 = mR.
     ///
     /// # Errors
-    /// As [`Self::set_preload`], for the load at rest and the one at a fixed speed; `NotFinite` or `Argument` for
+    /// As [`Self::set_preload`], for the load at Ω = 0 and the one at a fixed speed; `NotFinite` or `Argument` for
     /// `per_speed2`.
     pub fn set_preload_at_speed(&mut self, id: usize, preload: f64, per_speed2: f64) -> Result<()> {
         if !per_speed2.is_finite() {
@@ -75,8 +75,8 @@ impl Model {
         Ok(())
     }
 
-    /// Gives a contact the normal load at rest that wear has left: a negative one opens a gap where the law has a normal stiffness, and is
-    /// none elsewhere. A load that follows a fixed speed becomes the constant one.
+    /// Sets the static normal load that wear has left to a contact. A negative load opens a gap where the law has a
+    /// normal stiffness, and is zero elsewhere. A load that follows a fixed speed becomes constant.
     ///
     /// # Errors
     /// As [`Self::set_preload`].
@@ -128,8 +128,8 @@ impl Model {
         Ok(())
     }
 
-    /// Contacts whose load depends on the speed get that of the present one; with a speed tied to the frequency a
-    /// load above zero, which stands for all.
+    /// Sets contacts whose load depends on the speed to the load at the present speed; with a speed tied to the
+    /// frequency, to a positive load that represents all.
     pub(crate) fn apply_speed(&mut self) {
         let speed = self.speed();
         let mut loads = std::mem::take(self.speed_loads_mut());
@@ -146,7 +146,7 @@ impl Model {
         self.forces_at_speed(speed);
     }
 
-    /// ∂ln|N|/∂ω of a normal load that is tied to the frequency.
+    /// Derivative ∂ln|N|/∂ω of a normal load that is tied to the frequency.
     pub(crate) fn growth_of_load(&self, contact: usize, omega: f64) -> Option<f64> {
         let Speed::PerOmega(p) = self.speed() else { return None };
         let load = self.speed_loads().iter().find(|load| load.contact == contact)?;

@@ -17,27 +17,27 @@ const CONTEXT: &str = "the faces of the sector";
 /// Frame of the degrees of freedom on the faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SectorFrame {
-    /// x, y and z of each node, equal axes for both faces.
+    /// Axes x, y and z at each node, equal on both faces.
     Cartesian,
-    /// Radius, circumference and axis at each node, or any other frame that turns with the sector.
+    /// Axes along radius, circumference and axis at each node, or any other frame that turns with the sector.
     Cylindrical,
 }
 
 /// Description of a sector by its faces.
 #[derive(Clone, Copy, Debug)]
 pub struct SectorDescription<'a> {
-    /// Degrees of freedom of the sector with both faces.
+    /// Number of degrees of freedom of the sector with both faces.
     pub ndof: usize,
     /// Number of sectors N, at least 2.
     pub sectors: usize,
     /// Engine order of the wave; its sign is the sense of the wave.
     pub engine_order: i64,
-    /// Degrees of freedom of a node pair: 3 (x, y, z) or 6 (and the rotations) in a Cartesian frame, any number in a
-    /// cylindrical one.
+    /// Number of degrees of freedom of a node pair: 3 (x, y, z) or 6 (and the rotations) in a Cartesian frame, any
+    /// number in a cylindrical one.
     pub components: usize,
     /// Degrees of freedom of the left face, node after node; `None` where a component is missing.
     pub left: &'a [Option<usize>],
-    /// Those of the right face, in the same order.
+    /// Degrees of freedom of the right face, in the order of `left`.
     pub right: &'a [Option<usize>],
     /// Degrees of freedom that do not move.
     pub fixed: &'a [usize],
@@ -45,7 +45,7 @@ pub struct SectorDescription<'a> {
     pub frame: SectorFrame,
     /// Axis of the wheel, of any length; it passes through the origin.
     pub axis: [f64; 3],
-    /// Sector s + 1 follows sector s by +2π/N about the axis, else by −2π/N.
+    /// Whether sector s + 1 follows sector s by +2π/N about the axis; else by −2π/N.
     pub forward: bool,
     /// Cartesian positions of the nodes of the left and the right face, which are then checked.
     pub coordinates: Option<(Positions<'a>, Positions<'a>)>,
@@ -54,16 +54,16 @@ pub struct SectorDescription<'a> {
 /// Position of a degree of freedom in a sector.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Place {
-    /// Inside, or on the left face.
+    /// Inside of the sector, or on the left face.
     Interior,
-    /// On the right face.
+    /// On the right face, by its row (node) and component.
     Right { row: usize, component: usize },
 }
 
 /// Three components of a node that turn as a vector.
 type Vector = [Option<usize>; 3];
 
-/// The checked faces.
+/// The faces of a sector after checks.
 #[derive(Debug)]
 pub(crate) struct Faces {
     pub(crate) left: Vec<Option<usize>>,
@@ -73,11 +73,12 @@ pub(crate) struct Faces {
     pub(crate) axis: [f64; 3],
     pub(crate) forward: bool,
     pub(crate) sectors: usize,
-    /// 2π/N about the axis.
+    /// Rotation by 2π/N about the axis.
     turn: [[f64; 3]; 3],
-    /// (degree of freedom, entry of a face), ascending.
+    /// Pairs (degree of freedom, entry of a face), ascending.
     sorted: Vec<(usize, usize)>,
-    /// All nodes of the faces have `components` consecutive degrees of freedom, from a multiple of their number.
+    /// Whether each node of the faces has `components` consecutive degrees of freedom, beginning with a multiple of
+    /// their number.
     regular: bool,
 }
 
@@ -90,7 +91,7 @@ impl Faces {
         Self::about(sector, unit(sector.axis)?)
     }
 
-    /// The same about a unit vector, which stands for the axis of the description.
+    /// Checks the faces of a sector, with the unit vector `axis` in place of the axis of the description.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -138,7 +139,7 @@ impl Faces {
         Ok(faces)
     }
 
-    /// A copy, allocated fallibly.
+    /// A copy that returns an error if memory is short.
     pub fn try_clone(&self) -> Result<Self> {
         Ok(Self {
             left: try_copy(&self.left, CONTEXT)?,
@@ -187,7 +188,7 @@ impl Faces {
         }
     }
 
-    /// Name of the face of an entry, and its position there.
+    /// Name of the face to which an entry belongs, and the position of the entry on this face.
     fn entry(&self, at: usize) -> (&'static str, usize) {
         match at.checked_sub(self.left.len()) {
             None => ("left", at),
@@ -195,7 +196,7 @@ impl Faces {
         }
     }
 
-    /// Whether each node has consecutive degrees of freedom from a multiple of their number.
+    /// Whether each node has consecutive degrees of freedom, beginning with a multiple of their number.
     fn is_regular(&self) -> bool {
         let c = self.components;
         let mut complete = false;
@@ -223,7 +224,7 @@ impl Faces {
         }
     }
 
-    /// Degrees of freedom on the left face and coefficients of which one on the right face is the image.
+    /// Image of a degree of freedom on the right face: degrees of freedom on the left face, with coefficients.
     pub fn image(&self, row: usize, component: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let first = row * self.components;
         let turned = self.frame == SectorFrame::Cartesian;
@@ -236,7 +237,7 @@ impl Faces {
         terms.filter_map(|(dof, c)| dof.filter(|_| c != 0.0).map(|dof| (dof, c)))
     }
 
-    /// Refuses pairs that can move on one side only. A missing component does not move.
+    /// Refuses pairs of which only one side is fixed. A missing component counts as fixed.
     pub fn check_fixed(&self, fixed: &[bool]) -> Result<()> {
         let still = |dof: Option<usize>| dof.is_none_or(|dof| fixed[dof]);
         let side = |dof| Side { dof, fixed: still(dof) };
@@ -286,7 +287,7 @@ impl Faces {
         Some(self.sorted[at].1)
     }
 
-    /// Rotation by which the axes of the sector at `offset` are turned; `None` where they are not, or turn with it.
+    /// Rotation of the axes of the sector at `offset`; `None` where the axes are not turned, or turn with the sector.
     pub fn turn_of(&self, offset: i64) -> Option<[[f64; 3]; 3]> {
         let residue = i128::from(offset).rem_euclid(self.sectors as i128) as usize;
         (residue != 0 && self.frame == SectorFrame::Cartesian)
@@ -298,8 +299,8 @@ impl Faces {
         360.0 / self.sectors as f64
     }
 
-    /// The vector of components to which a degree of freedom belongs, and its position there: from the faces, from
-    /// the numbering, or from `given`, the x, y and z of a contact.
+    /// The vector of components to which a degree of freedom belongs, and its position in this vector: from the
+    /// faces, from the numbering, or from `given`, the x, y and z of a contact.
     pub fn vector_of(&self, dof: usize, ndof: usize, given: Option<(Vector, usize)>) -> Option<(Vector, usize)> {
         let c = self.components;
         if let Some(at) = self.find(dof) {
@@ -316,7 +317,7 @@ impl Faces {
     }
 }
 
-/// One side of a pair in a sentence.
+/// One side of a pair, to be printed in a sentence.
 struct Side {
     dof: Option<usize>,
     fixed: bool,
@@ -332,7 +333,7 @@ impl fmt::Display for Side {
     }
 }
 
-/// A unit vector.
+/// The axis scaled to length 1.
 fn unit(axis: [f64; 3]) -> Result<[f64; 3]> {
     if let Some(i) = axis.iter().position(|x| !x.is_finite()) {
         return fail!(NotFinite, "axis[{i}] = {}, needs a finite number", axis[i]);

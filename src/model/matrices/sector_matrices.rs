@@ -9,10 +9,10 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the matrices of the sector";
 
-/// Row, column and value.
+/// Entries of a matrix: row, column and value.
 pub(crate) type Entries = Vec<(usize, usize, Complex64)>;
 
-/// The blocks of a matrix of the sector. Its own block has the symmetry of the matrix exactly.
+/// The blocks of a sector matrix. The own block has exactly the symmetry of the matrix.
 pub(crate) fn blocks(map: &DegreeMap, a: &Csc, symmetry: Symmetry) -> Result<Blocks> {
     // A block per pair of sectors: rows and columns in the same one, in this and the next, in the next and this.
     let which = |row: i64, column: i64| match (row, column) {
@@ -59,8 +59,8 @@ pub(crate) fn blocks(map: &DegreeMap, a: &Csc, symmetry: Symmetry) -> Result<Blo
     })
 }
 
-/// Entries of a matrix of sector 0, given for all of its degrees of freedom, over the independent ones of this sector and, behind
-/// them, of the next.
+/// Entries of a matrix that is given on all degrees of freedom of sector 0, over the independent ones of this sector
+/// and, after these, of the next sector.
 pub(crate) fn of_both_sectors(map: &DegreeMap, a: &Csc) -> Result<Entries> {
     let n = map.independent();
     let mut count = 0;
@@ -74,7 +74,7 @@ pub(crate) fn of_both_sectors(map: &DegreeMap, a: &Csc) -> Result<Entries> {
     Ok(entries)
 }
 
-/// Calls `take` with (sector, number) of row and column, and the value, for all terms.
+/// Calls `take` for each term with (sector, number) of its row and column, and its value.
 fn visit(map: &DegreeMap, a: &Csc, mut take: impl FnMut((i64, usize), (i64, usize), Complex64)) {
     for j in 0..a.cols {
         let (column, terms) = map.image(j);
@@ -89,7 +89,7 @@ fn visit(map: &DegreeMap, a: &Csc, mut take: impl FnMut((i64, usize), (i64, usiz
     }
 }
 
-/// The Hermitian or symmetric matrix of an upper triangle.
+/// The full Hermitian or symmetric matrix, from its upper triangle.
 fn mirrored(upper: &Csc, symmetry: Symmetry) -> Result<Csc> {
     let n = upper.cols;
     let mut entries = Vec::new();
@@ -109,7 +109,7 @@ fn mirrored(upper: &Csc, symmetry: Symmetry) -> Result<Csc> {
     Csc::from_triplets(n, n, entries)
 }
 
-/// Aᴴ
+/// Adjoint matrix Aᴴ.
 fn adjoint(a: &Csc) -> Result<Csc> {
     let mut transposed = Csc::sum(a.rows, &[(Complex64::ONE, a, Form::Transposed)])?;
     for v in &mut transposed.values {
@@ -133,7 +133,7 @@ pub(crate) fn restricted(old: &DegreeMap, new: &DegreeMap, a: &impl Columns) -> 
     Csc::from_triplets(n, n, entries)
 }
 
-/// Rows and columns of the independent degrees of freedom of a matrix that is given for all.
+/// Rows and columns of the independent degrees of freedom, from a matrix on all degrees of freedom.
 pub(crate) fn of_independent(map: &DegreeMap, a: Csc) -> Result<Csc> {
     if map.is_identity() {
         return Ok(a);

@@ -18,9 +18,9 @@ use std::ops::Range;
 pub struct Term {
     /// Independent degree of freedom.
     pub dof: usize,
-    /// Its sector, counted from that of side a.
+    /// Sector of the degree of freedom, counted from that of side a.
     pub sector: i64,
-    /// Coefficient; side b counts negative.
+    /// Coefficient, with negative sign for side b.
     pub coefficient: f64,
 }
 
@@ -34,7 +34,8 @@ pub struct SectorMotion {
     terms: [Option<Term>; MOTION_TERMS],
 }
 
-/// Key of a relative motion: per term its degree of freedom, its sector in 0 .. N and the bits of its coefficient.
+/// Key of a relative motion: for each term its degree of freedom, its sector in 0 .. N, and the bits of its
+/// coefficient.
 pub type Key = [Option<(usize, i64, u64)>; MOTION_TERMS];
 
 /// Coefficients below this share of 1 are rounding.
@@ -47,20 +48,21 @@ impl SectorMotion {
         self.terms.iter().flatten()
     }
 
-    /// Row over the independent degrees of freedom, where the sector at an offset moves `phase` times as this one.
+    /// Row over the independent degrees of freedom; `phase` gives the motion of the sector at an offset over that of
+    /// this sector.
     pub fn row(&self, phase: impl Fn(i64) -> Complex64) -> Row {
         self.terms
             .map(|term| term.map(|t| (t.dof, phase(t.sector) * t.coefficient)))
     }
 
-    /// Row over the degrees of freedom of all sectors of a ring; `place` returns the number of one, from its number
-    /// in its sector and the offset of that sector.
+    /// Row over the degrees of freedom of all sectors of a ring; `place` returns the index of one from its index in
+    /// its sector and the offset of this sector.
     pub fn ring_row(&self, place: impl Fn(usize, i64) -> usize) -> [Option<(usize, f64)>; MOTION_TERMS] {
         self.terms
             .map(|term| term.map(|t| (place(t.dof, t.sector), t.coefficient)))
     }
 
-    /// Adds a term to side `side`, and returns whether there is room.
+    /// Adds a term to side `side`; returns whether there was room for it.
     fn add(&mut self, side: usize, term: Term, sectors: usize) -> bool {
         let places = &mut self.terms[places_of(side)];
         let alike = |t: &Term| t.dof == term.dof && (t.sector - term.sector).rem_euclid(sectors as i64) == 0;
@@ -80,19 +82,19 @@ impl SectorMotion {
         false
     }
 
-    /// Removes what cancels to rounding.
+    /// Removes terms that cancel to rounding.
     fn clean(&mut self) {
         for term in &mut self.terms {
             *term = term.filter(|t| t.coefficient.abs() > SECTOR_MOTION_ROUNDING);
         }
     }
 
-    /// Whether a side does not move at all.
+    /// Whether a side has no motion at all.
     fn is_still(&self, side: usize) -> bool {
         self.terms[places_of(side)].iter().all(Option::is_none)
     }
 
-    /// Whether both sides move alike whatever the motion.
+    /// Whether both sides always have the same motion.
     fn cancels(&self, sectors: usize) -> bool {
         let alike = |a: &Term, b: &Term| a.dof == b.dof && (a.sector - b.sector).rem_euclid(sectors as i64) == 0;
         self.terms().all(|t| {
@@ -102,24 +104,24 @@ impl SectorMotion {
     }
 }
 
-/// Places of the terms of a side.
+/// Positions of the terms of a side.
 fn places_of(side: usize) -> Range<usize> {
     if side == 0 { 0..TERMS_A } else { TERMS_A..MOTION_TERMS }
 }
 
-/// Reason why a motion cannot be written.
+/// Reason why a relative motion cannot be expressed.
 enum Unknown {
-    /// The components of the node of this degree of freedom, whose axes are turned, are not known.
+    /// The node of this degree of freedom has turned axes, and its components are not known.
     Node(usize),
-    /// Side names several nodes of the right face.
+    /// One side names several nodes of the right face.
     ManyNodes,
 }
 
-/// Sides of a relative motion.
+/// The two sides of a relative motion.
 struct Sides<'a> {
     direction: &'a Direction,
     sector_offset: i64,
-    /// x, y and z of the node on side b, where the contact has a frame.
+    /// Degrees of freedom x, y and z of the node on side b, where the contact has a frame.
     node_b: Option<[Option<usize>; 3]>,
 }
 
@@ -155,7 +157,7 @@ impl Structure {
         self.row(&self.contact_motion(contact, k), Wave::Harmonic(harmonic))
     }
 
-    /// A key that differs between different relative motions, and orders them.
+    /// A key that distinguishes different relative motions, and orders them.
     #[must_use]
     pub fn key(&self, motion: &SectorMotion) -> Key {
         let sectors = self.sectors() as i64;
@@ -164,7 +166,7 @@ impl Structure {
             .map(|term| term.map(|t| (t.dof, t.sector.rem_euclid(sectors), t.coefficient.to_bits())))
     }
 
-    /// Refuses relative motions that the faces or fixed degrees of freedom leave without meaning.
+    /// Refuses relative motions that have no meaning with these faces or fixed degrees of freedom.
     pub(crate) fn check_motion(
         &self,
         what: &str,
@@ -210,7 +212,7 @@ impl Structure {
         }
     }
 
-    /// The relative motion over the independent degrees of freedom.
+    /// Expresses a relative motion over the independent degrees of freedom.
     fn written(&self, sides: &Sides<'_>) -> core::result::Result<SectorMotion, Unknown> {
         let mut motion = SectorMotion::default();
         let offset = sides.sector_offset.rem_euclid(self.sectors() as i64);

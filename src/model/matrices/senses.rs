@@ -27,7 +27,7 @@ impl Structure {
         (1 - n) / 2..=n / 2
     }
 
-    /// Refuses nodal diameters other than 0 of a plain structure; a wheel has those of any number of waves, modulo N.
+    /// Refuses nodal diameters other than 0 for a plain structure; a wheel has waves of any number, modulo N.
     ///
     /// # Errors
     /// `Argument`.
@@ -53,8 +53,8 @@ impl Structure {
         }
     }
 
-    /// Whether the matrices of the wave −d are the conjugates of those of d: all blocks are real, and no matrix was given
-    /// for a negative diameter.
+    /// Whether the matrices of the wave −d are the conjugates of those of the wave d: all blocks are real, and no
+    /// matrix was given for a negative diameter.
     pub(crate) fn has_conjugate_waves(&self) -> bool {
         let aero = self.aero().iter().flatten();
         let given = |b: &Blocks| {
@@ -64,7 +64,7 @@ impl Structure {
         self.blocks.iter().all(given) && aero.map(Arc::as_ref).all(AeroInfluence::is_real)
     }
 
-    /// Whether the matrices of a nodal diameter, by its residue, can be made of what was given.
+    /// Whether the matrices of a nodal diameter, given by its residue, follow from what the caller gave.
     pub(crate) fn has_diameter(&self, residue: usize) -> bool {
         let other = (self.sectors - residue) % self.sectors;
         let has = |b: &Blocks, d: usize| b.diameters.get(d).is_some_and(Option::is_some);
@@ -72,8 +72,8 @@ impl Structure {
         self.blocks.iter().all(given)
     }
 
-    /// Whether the modes of a wave −d, by its residue, do not follow from those of d: M or K has complex blocks between
-    /// sectors, or matrices of its own for −d.
+    /// Whether the modes of a wave −d, given by its residue, do not follow from those of d: M or K has complex blocks
+    /// between sectors, or its own matrices for −d.
     pub(crate) fn has_own_sense(&self, residue: usize) -> bool {
         [MatrixKind::Mass, MatrixKind::Stiffness].into_iter().any(|kind| {
             let b = &self.blocks[kind as usize];
@@ -82,7 +82,7 @@ impl Structure {
         })
     }
 
-    /// Refuses matrices of d and −d that are not conjugate: no real structure has them.
+    /// Refuses matrices of d and −d that are not conjugate, since no real structure has such.
     ///
     /// # Errors
     /// `Unsupported`.

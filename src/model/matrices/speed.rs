@@ -6,14 +6,14 @@ use crate::contact::constants::Constant;
 /// Speed of rotation Ω in rad per time unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Speed {
-    /// Ω
+    /// Constant speed Ω.
     Fixed(f64),
     /// Ω = pω with the angular frequency ω of the response: p = 1/EO for an excitation of engine order EO.
     PerOmega(f64),
 }
 
 impl Speed {
-    /// Ω at the angular frequency ω of the response.
+    /// Speed Ω at the angular frequency ω of the response.
     #[must_use]
     pub fn at(self, omega: f64) -> f64 {
         match self {
@@ -26,13 +26,13 @@ impl Speed {
 /// A normal load that depends on the speed: N₀ + cΩ².
 #[derive(Clone, Copy, Debug)]
 pub struct SpeedLoad {
-    /// Number of the contact.
+    /// Index of the contact.
     pub contact: usize,
-    /// N₀
+    /// Load N₀ without rotation.
     pub preload: f64,
     /// Gap of the contact as the caller gave it.
     pub gap: f64,
-    /// c
+    /// Coefficient c of the load over Ω².
     pub per_speed2: f64,
 }
 
@@ -50,17 +50,17 @@ impl SpeedLoad {
         contact.under(load.max(0.0), self.gap + opening)
     }
 
-    /// n₀ of a load n₀ + c Ω² with the gap counted in.
+    /// Constant part n₀ of a load n₀ + c Ω², with the effect of the gap.
     pub fn load_at_rest(&self, contact: &Contact) -> f64 {
         self.preload - contact.constant(Constant::Kn) * self.gap
     }
 
-    /// A load that stands for all speeds Ω = pω: |n₀| + |c|p², above zero.
+    /// A positive load that represents all speeds Ω = pω: |n₀| + |c|p².
     pub fn reference(&self, contact: &Contact, p: f64) -> f64 {
         self.load_at_rest(contact).abs() + (self.per_speed2 * p * p).abs()
     }
 
-    /// The contact under ± this load, without any other gap.
+    /// The contact with the given load (either sign), without any other gap.
     pub fn referred(&self, contact: &Contact, load: f64) -> Contact {
         Self { gap: 0.0, ..*self }.under(contact, load)
     }

@@ -10,16 +10,17 @@ pub struct Spring {
     pub dof_a: Option<usize>,
     /// Degree of freedom on side b; `None` is the ground.
     pub dof_b: Option<usize>,
-    /// Side b lies in sector s + offset (cyclic models).
+    /// Sector offset: side b lies in sector s + offset (cyclic models).
     pub sector_offset: i64,
-    /// Force per length.
+    /// Stiffness, force per length.
     pub stiffness: f64,
 }
 
-/// Row of a relative motion: at most six entries of side a and three of side b, each (degree of freedom, coefficient).
+/// Row of a relative motion: at most six entries of side a and three of side b, each a pair (degree of freedom,
+/// coefficient).
 pub type Row = [Option<(usize, Complex64)>; TERMS_A + TERMS_B];
 
-/// r·x, the relative motion of a row.
+/// Relative motion r·x that the row reads from x.
 pub fn along(row: &Row, x: &[Complex64]) -> Complex64 {
     row.iter().flatten().map(|&(p, a)| a * x[p]).sum()
 }

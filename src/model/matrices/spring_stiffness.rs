@@ -14,7 +14,7 @@ use num_complex::Complex64;
 const TIE: f64 = 1e8;
 
 impl Model {
-    /// Rows of force and motion, and stiffness, of the springs of the model and of the `stuck` contacts in a wave.
+    /// Springs of the model and `stuck` contacts in a wave: row of force, row of motion, and stiffness of each.
     #[doc(hidden)]
     pub fn spring_rows<'c>(
         &self,
@@ -31,8 +31,8 @@ impl Model {
         Ok(rows)
     }
 
-    /// Calls `take` with each of them, with the stiffness of contacts between the motions of their directions k and l as
-    /// given, for whatever names a contact.
+    /// Calls `take` for each spring of the model and for each of the given contacts' pairs of directions k and l.
+    /// `stiffness` returns the contact's stiffness between these directions, from the value that names the contact.
     fn each_spring<'c, T: Copy>(
         &self,
         wave: Wave,
@@ -61,14 +61,15 @@ impl Model {
         Ok(())
     }
 
-    /// Stiffness in place of an infinite one, as of a rigid slider that sticks: [`TIE`] times that of the structure at its sides.
+    /// Finite stiffness in place of an infinite one, as of a rigid slider that sticks: [`TIE`] times the stiffness of
+    /// the structure at its sides.
     fn tie(&self, motion: &Row) -> f64 {
         let own = |p| self.structure().wave_diagonal(MatrixKind::Stiffness, 0, p).norm();
         TIE * motion.iter().flatten().map(|(p, _)| own(*p)).fold(0.0, f64::max)
     }
 
-    /// K of a wave, at a fixed speed with Ω²K₁, with aerodynamic forces per displacement, the springs of the model and
-    /// those of the `stuck` contacts.
+    /// Stiffness K of a wave, with Ω²K₁ at a fixed speed, aerodynamic forces per displacement, the springs of the
+    /// model, and the `stuck` contacts as springs.
     ///
     /// # Errors
     /// Those of [`Structure::wave_matrix`](crate::model::matrices::structure::Structure::wave_matrix).
@@ -77,7 +78,7 @@ impl Model {
         self.stiffness_with(wave, stuck.map(|c| (c, c)), Contact::stiffness_at_small_motion)
     }
 
-    /// The same with the stiffness of contacts as in [`Self::each_spring`].
+    /// Stiffness of a wave as `sprung_stiffness` has it, with the stiffness of contacts as in [`Self::each_spring`].
     ///
     /// # Errors
     /// As [`Self::sprung_stiffness`].

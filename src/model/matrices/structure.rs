@@ -24,20 +24,20 @@ pub const MAX_DOF: usize = 1 << 31;
 /// Kind: cap.
 pub const MAX_SECTORS: usize = 1 << 20;
 
-/// A matrix of the structure.
+/// Kind of a matrix of the structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MatrixKind {
-    /// M
+    /// Mass matrix M.
     Mass = 0,
-    /// C
+    /// Damping matrix C.
     Damping = 1,
-    /// K
+    /// Stiffness matrix K.
     Stiffness = 2,
-    /// D of the structural damping iD in harmonics above 0.
+    /// Matrix D of the structural damping iD in harmonics above 0.
     Structural = 3,
-    /// G of the gyroscopic term ΩG ẋ, skew-symmetric.
+    /// Skew-symmetric matrix G of the gyroscopic term ΩG ẋ.
     Gyroscopic = 4,
-    /// K₁ of the stiffness K + Ω²K₁ at speed; that of softening is negative.
+    /// Matrix K₁ of the stiffness K + Ω²K₁ at speed; negative where rotation softens the structure.
     StiffnessSpeed2 = 5,
 }
 
@@ -66,21 +66,23 @@ pub struct Structure {
     pub(crate) degrees: DegreeMap,
     pub(crate) sectors: usize,
     pub(crate) engine_order: i64,
-    /// Shared with copies until one of them changes it.
+    /// Blocks of each kind of matrix, shared with copies until one of them changes it.
     pub(crate) blocks: Arc<[Blocks; KINDS]>,
     pub(crate) rayleigh: (f64, f64),
     /// Loss factor η of the stiffness of the structure.
     pub(crate) loss_factor: f64,
-    /// The structural matrix has the loss of a complex stiffness, whose backward waves are unknown where it is given per
-    /// diameter.
+    /// Whether the structural matrix contains the loss of a complex stiffness, whose backward waves are unknown where
+    /// it is given per diameter.
     pub(crate) loss_of_stiffness: bool,
-    /// Speed of rotation.
+    /// Speed of rotation Ω.
     pub(crate) speed: Speed,
-    /// Modal damping as a matrix by the residue of the nodal diameter, as matrices per diameter; empty: none.
+    /// Modal damping matrices by the residue of the nodal diameter; empty: none.
     pub(crate) modal_damping: Vec<Option<KeptMatrix>>,
-    /// Sectors and engine order, where this is a whole wheel: what its equations may be taken for, and no result depends on.
+    /// Number of sectors and engine order, where this is a whole wheel. Solvers may use its symmetry, but no result
+    /// depends on this.
     pub(crate) wheel: Option<(usize, i64)>,
-    /// The sector that a whole wheel was made of; `None` where that is not known, as from bytes of an earlier version.
+    /// Digest of the sector of which a whole wheel was made; `None` where it is not known, as from bytes of an
+    /// earlier version.
     pub(crate) sector: Option<SectorDigest>,
     /// Aerodynamic influence per displacement and per velocity.
     aero: [Option<Arc<AeroInfluence>>; FORMS],
@@ -110,7 +112,7 @@ impl Structure {
         })
     }
 
-    /// Whether any damping was given.
+    /// Whether the caller gave any damping.
     pub fn is_damped(&self) -> bool {
         self.rayleigh != (0.0, 0.0)
             || self.parts(MatrixKind::Damping).any(|a| !a.is_empty())
@@ -120,12 +122,12 @@ impl Structure {
             || self.has_aero()
     }
 
-    /// Whether damping without a causal law was given: a loss factor or a structural matrix.
+    /// Whether the caller gave damping without a causal law: a loss factor or a structural matrix.
     pub fn has_structural_damping(&self) -> bool {
         self.loss_factor != 0.0 || self.has_structural_matrix()
     }
 
-    /// Whether a structural matrix was given.
+    /// Whether the caller gave a structural matrix.
     pub fn has_structural_matrix(&self) -> bool {
         self.parts(MatrixKind::Structural).any(|a| !a.is_empty())
     }
@@ -151,7 +153,7 @@ impl Structure {
         Ok(self.is_gyroscopic() && self.tied_to_frequency(Wave::Harmonic(h))?.is_none())
     }
 
-    /// Whether damping ratios of modes were given.
+    /// Whether the caller gave damping ratios of modes.
     pub fn has_modal_damping(&self) -> bool {
         !self.modal_damping.is_empty()
     }
@@ -161,12 +163,12 @@ impl Structure {
         self.loss_factor
     }
 
-    /// Whether a matrix was given in any form.
+    /// Whether the caller gave a matrix of this kind, in any form.
     pub fn has(&self, kind: MatrixKind) -> bool {
         self.parts(kind).next().is_some()
     }
 
-    /// The blocks of a matrix that were given.
+    /// The given blocks of a matrix of one kind.
     pub(crate) fn parts(&self, kind: MatrixKind) -> impl Iterator<Item = &KeptMatrix> {
         self.blocks[kind as usize].parts()
     }
@@ -190,7 +192,7 @@ impl Structure {
         })
     }
 
-    /// The blocks of a matrix for a change, copied where others use them.
+    /// The blocks of a matrix to be changed; copied first where others share them.
     pub(crate) fn blocks_mut(&mut self, which: MatrixKind) -> Result<&mut Blocks> {
         if Arc::get_mut(&mut self.blocks).is_none() {
             let mut blocks: [Blocks; KINDS] = Default::default();
@@ -210,7 +212,7 @@ impl Structure {
         self.wheel
     }
 
-    /// Independent degrees of freedom of one sector, the order of its matrices.
+    /// Number of independent degrees of freedom of one sector, the order of its matrices.
     #[must_use]
     pub fn ndof(&self) -> usize {
         self.degrees.independent()
@@ -229,7 +231,7 @@ impl Structure {
         Ok(structure)
     }
 
-    /// The same structure with more degrees of freedom fixed.
+    /// A copy of this structure with further degrees of freedom fixed.
     ///
     /// # Errors
     /// As [`DegreeMap::fixing`].
@@ -256,7 +258,7 @@ impl Structure {
         })
     }
 
-    /// The same structure with `count` degrees of freedom without matrices behind all others.
+    /// A copy of this structure with `count` further degrees of freedom, without matrices, after all others.
     ///
     /// # Errors
     /// `Dimension` for too many; `OutOfMemory`.
@@ -348,7 +350,7 @@ impl Structure {
         Ok(())
     }
 
-    /// Refuses a change of what the modes of the modal damping depend on.
+    /// Refuses a change of data on which the modes of the modal damping depend.
     pub(crate) fn refuse_modal_damping(&self, change: &str) -> Result<()> {
         if self.modal_damping.is_empty() {
             return Ok(());
@@ -359,7 +361,7 @@ impl Structure {
         )
     }
 
-    /// The same for a matrix that is set.
+    /// Refuses to set a matrix on which the modes of the modal damping depend.
     fn refuse_modal_matrix(&self, which: MatrixKind) -> Result<()> {
         match which {
             MatrixKind::Mass => self.refuse_modal_damping("mass is set"),
@@ -397,7 +399,7 @@ impl Structure {
         Ok(())
     }
 
-    /// The matrix of a view, its symmetry checked.
+    /// The matrix of a caller's view, after a check of its symmetry.
     fn copied(&self, which: MatrixKind, a: &MatrixView<'_>) -> Result<Csc> {
         if which == MatrixKind::Gyroscopic {
             return a.copy_in_skew(which.name(), self.degrees.given());
@@ -435,7 +437,7 @@ impl Structure {
         Ok(())
     }
 
-    /// A coupling block is a general matrix, whatever part the view declares.
+    /// Copies a coupling block, which is a general matrix whatever part the view declares.
     fn coupling(&self, which: MatrixKind, a: &MatrixView<'_>) -> Result<Csc> {
         if self.sectors == 1 {
             return fail!(
@@ -507,7 +509,7 @@ impl Structure {
         )
     }
 
-    /// A mass matrix that is symmetric must be real.
+    /// Refuses a symmetric mass matrix with complex entries.
     fn check_mass(which: MatrixKind, a: &MatrixView<'_>, copied: &Csc) -> Result<()> {
         if which == MatrixKind::Mass
             && a.part.symmetry() == Symmetry::Plain

@@ -1,10 +1,11 @@
 //! A wave on the structure, by harmonic or by nodal diameter.
 
-/// A wave on the structure, which determines the phase of a sector offset and the stiffness matrix.
+/// A wave on the structure. It determines the phase between sectors, and the stiffness matrix.
 #[derive(Clone, Copy, Debug)]
 pub enum Wave {
-    /// Harmonic of the engine-order wave.
+    /// The wave of this harmonic under the engine order.
     Harmonic(usize),
-    /// Signed nodal diameter d, modulo N: sector s + 1 lags by 2πd/N, so that a negative one travels the other way.
+    /// The wave of a signed nodal diameter d, modulo N: sector s + 1 lags by 2πd/N, so that a negative d travels the
+    /// other way.
     Diameter(i64),
 }

@@ -9,14 +9,14 @@ use num_complex::Complex64;
 /// A matrix of a wave.
 #[derive(Debug)]
 pub enum WaveMatrix<'a> {
-    /// The own block of a structure whose sectors are not coupled, or that has one sector.
+    /// The kept own block, for a structure with one sector or without coupling between sectors.
     Kept(&'a KeptMatrix),
-    /// One that was made for the wave.
+    /// A matrix that was made for the wave.
     Made(Csc),
 }
 
 impl WaveMatrix<'_> {
-    /// The matrix in the form of computations.
+    /// The matrix as compressed sparse columns, converted or moved.
     pub fn into_csc(self) -> Result<Csc> {
         match self {
             Self::Kept(a) => a.expanded(),
@@ -72,7 +72,8 @@ impl Columns for WaveMatrix<'_> {
 }
 
 impl Structure {
-    /// A matrix of a harmonic of the wave, or its complex conjugate, as [`Self::wave_matrix`] has it.
+    /// Matrix of one kind for a harmonic, or its complex conjugate, without a copy where possible; see
+    /// [`Self::wave_matrix`].
     ///
     /// # Errors
     /// As [`Self::wave_matrix`].

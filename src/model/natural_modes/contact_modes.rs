@@ -16,6 +16,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::dense::fallible_matrix::{filled, zeros};
 use crate::linalg::dense::hermitian;
 use crate::linalg::factors::shifted_inverse::Inverse;
+use crate::linalg::libraries::{DMatrix, SymmetricEigen};
 use crate::linalg::sparse_storage::definite::resists_all_motion;
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::linalg::{inner, remove};
@@ -23,7 +24,6 @@ use crate::model::Model;
 use crate::model::matrices::structure::MatrixKind;
 use crate::model::matrices::wave::Wave;
 use crate::model::natural_modes::linear_modes::ContactState;
-use nalgebra::{DMatrix, SymmetricEigen};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the modes of the contacts";
@@ -43,42 +43,43 @@ const CONTACT_MODES_SMALL: usize = 100;
 /// A force of one harmonic on all independent degrees of freedom.
 pub(crate) struct ForceOfWave {
     pub harmonic: usize,
-    /// Whether its wave travels against the sense of the modes: then the values are conjugate.
+    /// Whether the wave of the force travels against the sense of the modes; its values are then conjugate.
     pub backward: bool,
     pub values: Vec<Complex64>,
 }
 
-/// The same as modes and contacts see it.
+/// A force as the modes and contacts see it.
 pub(crate) struct SeenForce {
     pub harmonic: usize,
-    /// Whether its wave travels against the sense of the modes: then all numbers are those of the conjugate force.
+    /// Whether the wave of the force travels against the sense of the modes; all numbers then belong to the conjugate
+    /// force.
     pub backward: bool,
-    /// φᴴ F of each mode.
+    /// Modal force φᴴ F of each mode.
     pub modal: Vec<Complex64>,
-    /// R K⁻¹ F of each contact.
+    /// Static motion R K⁻¹ F of each contact under the force.
     pub static_motion: Vec<Complex64>,
 }
 
-/// Modes of one nodal diameter.
+/// Modes of one nodal diameter, as contacts and forces see them.
 pub(crate) struct ContactModes {
     /// Natural angular frequencies, ascending.
     pub omega: Vec<f64>,
-    /// ψ = R φ, contact by mode.
+    /// Relative motions ψ = R φ, contact by mode.
     pub rows: DMatrix<Complex64>,
-    /// R K⁻¹ Rᴴ of the stuck structure, contact by contact.
+    /// Static flexibility R K⁻¹ Rᴴ of the stuck structure, contact by contact.
     pub flexibility: DMatrix<Complex64>,
-    /// φᴴ C φ.
+    /// Modal damping matrix φᴴ C φ.
     pub damping: DMatrix<Complex64>,
     pub forces: Vec<SeenForce>,
-    /// Relative motions over the degrees of freedom, contact by contact.
+    /// Rows R of the relative motions over the degrees of freedom, contact by contact.
     motions: Vec<Vec<(usize, Complex64)>>,
-    /// M φ, column after column, mass-normalised.
+    /// Images M φ of the mass-normalised shapes, column after column.
     images: Vec<Complex64>,
     n: usize,
 }
 
 impl ContactModes {
-    /// A number of modes of a nodal diameter 0 ..= N/2, for contacts of one direction each, and for forces.
+    /// Computes `modes` modes of a nodal diameter 0 ..= N/2, for contacts of one direction each, and for forces.
     ///
     /// # Errors
     /// `Unsupported` where no stiffness resists some motion of the stuck structure; those of the eigensolvers;
@@ -186,12 +187,12 @@ impl ContactModes {
         })
     }
 
-    /// Number of modes.
+    /// Number of modes computed.
     pub fn modes(&self) -> usize {
         self.omega.len()
     }
 
-    /// φᴴ M x of each of the first `modes` modes.
+    /// Modal coordinates φᴴ M x of a motion x, in the first `modes` modes.
     pub fn coordinates(&self, x: &[Complex64], modes: usize) -> Result<Vec<Complex64>> {
         let mut found = Vec::new();
         for image in self.images.chunks_exact(self.n).take(modes) {
@@ -200,7 +201,7 @@ impl ContactModes {
         Ok(found)
     }
 
-    /// R x of each contact.
+    /// Relative motion R x of each contact.
     pub fn relative(&self, x: &[Complex64]) -> Result<Vec<Complex64>> {
         let mut found = Vec::new();
         for motion in &self.motions {
@@ -211,9 +212,10 @@ impl ContactModes {
     }
 }
 
-/// At most `count` shapes, orthonormal with the mass: half of them from modes with sticking contacts, half from modes without
-/// contacts, and further ones of the former for those that are not new. Real ones are taken of a real structure, whose modes an
-/// eigensolver may have turned by any phase and mixed where frequencies are equal.
+/// At most `count` shapes, orthonormal with the mass: half of them from modes with sticking contacts, half from modes
+/// without contacts; further ones with sticking contacts replace those that are not independent. For a real structure
+/// the shapes are real; an eigensolver may have turned its modes by any phase, and mixed them where frequencies are
+/// equal.
 fn joined(
     stuck: &[Complex64],
     free: &[Complex64],

@@ -80,7 +80,8 @@ impl Model {
         self.damped_mode_with(start, ContactState::Stuck, form, &Interrupt::none())
     }
 
-    /// The same as [`Self::damped_mode`] with contacts stuck or about a static state, and the caller may stop it.
+    /// Continues a mode as [`Self::damped_mode`], with contacts stuck or linearised about a static state, and the
+    /// caller may stop it.
     ///
     /// # Errors
     /// As [`Self::damped_mode`]; `StoppedByCaller`.
@@ -157,14 +158,14 @@ impl Model {
     }
 }
 
-/// Matrices of the fundamental.
+/// Matrices of the structure in the fundamental.
 struct Damped {
     form: DampingForm,
     stiffness: Csc,
     own: Csc,
     damping: Csc,
     mass: Csc,
-    /// p²K₁ and pG of a speed that is tied to the frequency.
+    /// Matrices p²K₁ and pG of a speed that is tied to the frequency; `None` otherwise.
     tied: Option<Tied>,
 }
 
@@ -189,7 +190,7 @@ impl Damped {
         Csc::sum(self.mass.rows, &terms)
     }
 
-    /// A(ω, D) as a sum: the terms with their factors.
+    /// Terms of A(ω, D) as a sum: factors and matrices.
     fn sum(&self, omega: f64, d: f64) -> impl Iterator<Item = (Complex64, &Csc)> {
         let square = omega * omega;
         let tied = self.tied.iter().flat_map(move |tied| {
@@ -201,7 +202,7 @@ impl Damped {
         self.factors(omega, d).into_iter().zip(self.terms()).chain(tied)
     }
 
-    /// A x, ∂A/∂ω x and ∂A/∂D x, one after the other.
+    /// Products A x, ∂A/∂ω x and ∂A/∂D x, one after the other.
     fn columns(&self, mode: &DampedMode) -> Result<Vec<Complex64>> {
         let (n, x, i) = (self.mass.rows, &mode.shape, Complex64::I);
         let (omega, d) = (mode.omega, mode.damping);
@@ -230,7 +231,7 @@ impl Damped {
     }
 
     /// Newton's method on A(ω, D) x = 0, vᴴ x = 1 with v = M φ, with the factors at a shift nearby: x changes by
-    /// A⁻¹(A x + dω ∂A/∂ω x + dD ∂A/∂D x), and v is orthogonal to the change.
+    /// A⁻¹(A x + dω ∂A/∂ω x + dD ∂A/∂D x), and v is orthogonal to this change.
     fn follow(&self, start: &DampedMode, offset: f64, interrupt: &Interrupt<'_>) -> Result<DampedMode> {
         let n = self.mass.rows;
         let mut mode = DampedMode {

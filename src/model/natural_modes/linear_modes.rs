@@ -8,6 +8,7 @@ use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::dense::eigen::{self, Pairs};
 use crate::linalg::exact_sums::quadratic::{QUADRATIC_ROUNDING, form, quadratic, terms};
 use crate::linalg::iterative::lanczos;
+use crate::linalg::libraries::DMatrix;
 use crate::linalg::sparse_storage::definite::resists_all_motion;
 use crate::linalg::sparse_storage::held_rows::MovingRows;
 use crate::linalg::sparse_storage::sparse::Csc;
@@ -16,18 +17,17 @@ use crate::model::matrices::structure::MatrixKind;
 use crate::model::matrices::wave::Wave;
 use crate::model::natural_modes::quadratic_problem::Quadratic;
 use crate::model::natural_modes::static_tangents::StaticTangents;
-use nalgebra::DMatrix;
 use num_complex::Complex64;
 use std::borrow::Cow;
 
 /// State of the contacts in a linear analysis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ContactState<'a> {
-    /// Without force.
+    /// Contacts without force.
     Free,
-    /// Linear springs of their stiffness at small motion.
+    /// Contacts as linear springs with their stiffness at small motion.
     Stuck,
-    /// Linear springs of their tangent stiffness at a static motion.
+    /// Contacts as linear springs with their tangent stiffness at a static motion.
     #[doc(hidden)]
     AboutStatic(&'a StaticTangents),
 }
@@ -35,10 +35,10 @@ pub enum ContactState<'a> {
 /// Natural modes in ascending order of frequency.
 #[derive(Clone, Debug)]
 pub struct LinearModes {
-    /// Natural angular frequencies; those of rigid-body modes are near zero. A motion that grows has minus the rate of its
+    /// Natural angular frequencies; near zero for rigid-body modes. For a motion that grows, minus its rate of
     /// growth: −√(−λ) for an eigenvalue λ = ω² below zero, where the stiffness is negative.
     pub omega: Vec<f64>,
-    /// Mass-normalised shapes (φᴴ M φ = 1 over one sector), one after the other, ndof each.
+    /// Mass-normalised shapes (φᴴ M φ = 1 over one sector), one after the other, `ndof` numbers each.
     pub shapes: Vec<Complex64>,
 }
 
@@ -72,11 +72,11 @@ const CONTEXT: &str = "the natural modes";
 /// K and M of a wave, checked to be Hermitian.
 pub(crate) struct Pencil {
     pub stiffness: Csc,
-    /// The matrix of the inertia, with the terms of a speed that is tied to the frequency.
+    /// Matrix of the inertia, with the terms of a speed that is tied to the frequency.
     pub mass: Csc,
-    /// M itself where the inertia has more terms.
+    /// Mass matrix M, where the inertia has more terms; else `None`.
     weight: Option<Csc>,
-    /// ΩG at a fixed speed.
+    /// Gyroscopic matrix ΩG at a fixed speed; `None` without.
     gyroscopic: Option<Csc>,
 }
 
@@ -90,7 +90,7 @@ impl Model {
         self.lowest_modes_with(diameter, contacts, count, &Interrupt::none())
     }
 
-    /// The same as [`Self::lowest_modes`], and the caller may stop it.
+    /// Computes modes as [`Self::lowest_modes`], and the caller may stop it.
     ///
     /// # Errors
     /// As [`Self::lowest_modes`]; `StoppedByCaller`.
@@ -112,12 +112,11 @@ impl Model {
         self.expanded(pencil.lowest(count, interrupt)?.turned(is_mirrored), diameter)
     }
 
-    /// All undamped natural modes of the signed nodal diameter `diameter`, modulo N (0 for a plain structure): the wave in
-    /// which sector s + 1 lags by 2π·diameter/N. With gyroscopic forces or complex blocks the wave of −`diameter` has other
-    /// modes; else it has the same frequencies and the conjugate shapes. Motion without mass has no mode, so that a singular mass
-    /// matrix gives fewer modes than degrees
-    /// of freedom. Dense algebra is meant for up to a few hundred degrees of freedom; [`Self::lowest_modes`] serves
-    /// larger structures.
+    /// All undamped natural modes of the signed nodal diameter `diameter`, modulo N (0 for a plain structure): the
+    /// wave in which sector s + 1 lags by 2π·diameter/N. With gyroscopic forces or complex blocks the wave of
+    /// −`diameter` has other modes; otherwise it has the same frequencies and the conjugate shapes. Motion without
+    /// mass has no mode, so that a singular mass matrix gives fewer modes than degrees of freedom. Dense algebra is
+    /// meant for up to a few hundred degrees of freedom; [`Self::lowest_modes`] serves larger structures.
     ///
     /// # Errors
     /// `Argument` for a diameter of a plain structure, `NotHermitian` when K or M is not, and those of
@@ -129,7 +128,7 @@ impl Model {
         self.expanded(modes.turned(is_mirrored), diameter)
     }
 
-    /// Whether undamped waves of −d have the frequencies of those of d and the conjugate shapes.
+    /// Whether the undamped waves of −d have the frequencies of those of d, and the conjugate shapes.
     #[must_use]
     pub fn has_equal_senses(&self) -> bool {
         self.structure().has_conjugate_waves() && !self.structure().is_gyroscopic()
@@ -147,8 +146,8 @@ impl Model {
         Ok((signed, false))
     }
 
-    /// Natural frequencies of harmonic `h`, ascending, 0 for motions that grow; `None` where they cannot be had, as where K or M
-    /// is not Hermitian.
+    /// Natural frequencies of harmonic `h`, ascending, 0 for motions that grow; `None` where they cannot be computed,
+    /// as where K or M is not Hermitian.
     pub(crate) fn natural_frequencies(
         &self,
         h: usize,
@@ -185,9 +184,9 @@ impl Model {
         Ok(LinearModes { shapes, ..modes })
     }
 
-    /// Motions of a nodal diameter that neither structure nor springs resist: modes whose frequency without
-    /// contacts is zero, up to rounding, or that grow. At most six are counted for a large structure. 0 for a structure whose
-    /// stiffness is not Hermitian, where the number is not known.
+    /// Number of motions of a nodal diameter that neither structure nor springs resist: modes whose frequency without
+    /// contacts is zero, up to rounding, or that grow. At most six are counted for a large structure. 0 for a
+    /// structure whose stiffness is not Hermitian, where the number is not known.
     ///
     /// # Errors
     /// `OutOfMemory`, and those of the eigensolvers; `StoppedByCaller`.
@@ -273,23 +272,23 @@ impl Model {
 }
 
 impl Pencil {
-    /// M, whatever else the inertia contains.
+    /// Mass matrix M, whatever else the inertia contains.
     pub fn weight(&self) -> &Csc {
         self.weight.as_ref().unwrap_or(&self.mass)
     }
 
-    /// Leaves gyroscopic forces out.
+    /// Removes gyroscopic forces.
     pub fn leave_out_gyroscopic(&mut self) {
         self.gyroscopic = None;
     }
 
-    /// Whether a request for `count` modes is answered by dense algebra, which finds all.
+    /// Whether `count` modes are computed by dense algebra, which finds all modes.
     pub fn finds_all(&self, count: usize) -> bool {
         let n = self.mass.rows;
         n <= LINEAR_MODES_DENSE_UP_TO || count > n / 4
     }
 
-    /// The `count` lowest modes, fewer if there are not so many.
+    /// The `count` lowest modes, or all if there are fewer.
     pub fn lowest(&self, count: usize, interrupt: &Interrupt<'_>) -> Result<LinearModes> {
         if let Some(moving) = MovingRows::of(&self.stiffness)? {
             let mut modes = self.reduced(&moving)?.lowest(count, interrupt)?;
@@ -318,7 +317,7 @@ impl Pencil {
         self.modes(&pairs)
     }
 
-    /// The pencil of the rows that move.
+    /// The pencil restricted to the rows that have stiffness or mass.
     fn reduced(&self, moving: &MovingRows) -> Result<Self> {
         let reduced = |a: &Option<Csc>| a.as_ref().map(|a| moving.reduced(a)).transpose();
         Ok(Self {
@@ -329,7 +328,7 @@ impl Pencil {
         })
     }
 
-    /// Modes of eigenpairs; an eigenvalue below zero beyond rounding is a motion that grows.
+    /// Modes from eigenpairs; an eigenvalue below zero beyond rounding belongs to a motion that grows.
     fn modes(&self, pairs: &Pairs) -> Result<LinearModes> {
         let mut modes = LinearModes {
             omega: Vec::new(),
@@ -346,7 +345,7 @@ impl Pencil {
         Ok(modes)
     }
 
-    /// Rate √(−φᴴKφ / φᴴMφ) at which a motion of negative stiffness grows; 0 where that is rounding.
+    /// Rate √(−φᴴKφ / φᴴMφ) at which a motion of negative stiffness grows; 0 where this is rounding.
     fn growth(&self, shape: &[Complex64]) -> f64 {
         let energy = quadratic(&self.stiffness, shape);
         if energy >= -QUADRATIC_ROUNDING * terms(&self.stiffness, shape) {
@@ -434,8 +433,8 @@ impl Pencil {
         Ok(modes)
     }
 
-    /// φᴴKφ / φᴴMφ. The quotient is stationary at the eigenvector and so far more accurate than the vector; only it
-    /// distinguishes a rigid motion of a stiff structure from a slow one.
+    /// Rayleigh quotient φᴴKφ / φᴴMφ. It is stationary at the eigenvector, and therefore far more accurate than the
+    /// vector; only with it can a rigid motion of a stiff structure be distinguished from a slow one.
     pub fn quotient(&self, shape: &[Complex64]) -> f64 {
         let (k, m) = (quadratic(&self.stiffness, shape), quadratic(&self.mass, shape));
         let Some(gyroscopic) = &self.gyroscopic else {
@@ -448,7 +447,7 @@ impl Pencil {
 }
 
 impl LinearModes {
-    /// The conjugate shapes, if `conjugated`.
+    /// The modes, with conjugate shapes if `conjugated`.
     fn turned(mut self, conjugated: bool) -> Self {
         if conjugated {
             for z in &mut self.shapes {

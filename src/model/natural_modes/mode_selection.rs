@@ -17,21 +17,21 @@ use std::ops::Range;
 /// A natural mode with the contacts stuck.
 #[derive(Clone, Debug)]
 pub struct SelectedMode {
-    /// Its number, from 0 by rising stuck frequency; the first of equal frequencies, unless the number was
-    /// requested.
+    /// Index of the mode, from 0 by rising stuck frequency; that of the first of equal frequencies, unless another
+    /// one was requested.
     pub index: usize,
-    /// Its angular frequency, rad per time unit.
+    /// Angular frequency of the mode, rad per time unit.
     pub omega: f64,
-    /// Its shape, φᴴ M φ = 1 over one sector. The degree of freedom that moves most is real and positive, except
-    /// with [`Multiple::Projected`], which keeps the phase of the given shape.
+    /// Shape of the mode, φᴴ M φ = 1 over one sector. The degree of freedom that moves most is real and positive,
+    /// except with [`Multiple::Projected`], which keeps the phase of the given shape.
     pub shape: Vec<Complex64>,
     /// Number of modes of this frequency.
     pub multiplicity: usize,
-    /// Choice among the modes of this frequency.
+    /// Rule that chose among the modes of this frequency.
     pub multiple: Multiple,
     /// The known stuck frequencies, ascending: all of a small structure, the lowest of a large one.
     pub stuck: Vec<f64>,
-    /// The same number of frequencies with the contacts removed; empty if they could not be found.
+    /// As many frequencies with the contacts removed; empty if they could not be found.
     pub free: Vec<f64>,
 }
 
@@ -60,7 +60,8 @@ impl Model {
         self.select_mode_with(choice, ContactState::Stuck, &Interrupt::none())
     }
 
-    /// The same as [`Self::select_mode`] with contacts stuck or about a static state, and the caller may stop it.
+    /// Selects a mode as [`Self::select_mode`], with contacts stuck or linearised about a static state, and the
+    /// caller may stop it.
     ///
     /// # Errors
     /// As [`Self::select_mode`]; `StoppedByCaller`.
@@ -116,11 +117,11 @@ struct ChosenMode {
     projection: Option<Vec<Complex64>>,
 }
 
-/// The modes that are known so far.
+/// The modes that have been computed.
 struct KnownModes<'a> {
     pencil: &'a Pencil,
     modes: LinearModes,
-    /// The structure has no other modes.
+    /// Whether these are all modes of the structure.
     all: bool,
 }
 
@@ -158,7 +159,7 @@ impl<'a> KnownModes<'a> {
         }
     }
 
-    /// Selects a mode; `None`: more modes must be known.
+    /// Selects a mode; `None` if more modes must be computed first.
     fn choose(&self, choice: ModeChoice<'_>) -> Result<Option<ChosenMode>> {
         let omega = &self.modes.omega;
         let Some(&highest) = omega.last() else {

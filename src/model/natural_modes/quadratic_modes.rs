@@ -11,11 +11,11 @@ use crate::interrupt::Interrupt;
 use crate::linalg::dense::eigen;
 use crate::linalg::exact_sums::quadratic::quadratic;
 use crate::linalg::factors::factor::Factor;
+use crate::linalg::libraries::{DMatrix, Schur};
 use crate::linalg::sparse_storage::held_rows::MovingRows;
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::natural_modes::quadratic_problem::{Pair, QUADRATIC_PROBLEM_REAL, Quadratic, is_one};
 use crate::model::natural_modes::quadratic_search::lowest_by_search;
-use nalgebra::{DMatrix, Schur};
 use num_complex::Complex64;
 
 /// Degrees of freedom up to which all modes are found by dense algebra: 0.1 s for a mode or for all; the search takes less above.
@@ -49,8 +49,9 @@ const QUADRATIC_MODES_COPIES: usize = 6;
 const CONTEXT: &str = "the damped modes";
 
 impl Quadratic<'_> {
-    /// The `count` eigenvalues of lowest imaginary part, fewer if there are not so many. Motions that do not oscillate, rigid or
-    /// damped beyond vibration, are not counted, unless they grow: these have a real eigenvalue above zero, and come first.
+    /// The `count` eigenvalues of lowest imaginary part, or all if there are fewer. Motions that do not oscillate,
+    /// rigid or damped beyond vibration, are not counted unless they grow: these have a real eigenvalue above zero,
+    /// and come first.
     ///
     /// # Errors
     /// Those of the eigensolvers; `NoConvergence`, `OutOfMemory`, `StoppedByCaller`.
@@ -122,14 +123,14 @@ impl Quadratic<'_> {
         }
     }
 
-    /// The undamped modes, column by column.
+    /// Undamped modes as a basis, column after column.
     fn basis(&self, hermitian: &Csc, interrupt: &Interrupt<'_>) -> Result<DMatrix<Complex64>> {
         let n = self.mass.rows;
         check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(2 * QUADRATIC_MODES_COPIES), CONTEXT)?;
         Ok(eigen::generalised(&dense(hermitian), &dense(self.mass), interrupt)?.vectors)
     }
 
-    /// Eigenvalues and shapes of the projection on the columns of `basis`, which are orthonormal in M.
+    /// Eigenvalues and shapes of the problem projected on the columns of `basis`, which are orthonormal in M.
     fn projected(&self, basis: &DMatrix<Complex64>, interrupt: &Interrupt<'_>) -> Result<Vec<Pair>> {
         let (n, r) = (basis.nrows(), basis.ncols());
         check_memory::<Complex64>((4 * r * r).saturating_mul(QUADRATIC_MODES_COPIES), CONTEXT)?;

@@ -17,13 +17,13 @@ const ONE_VECTOR: f64 = 1e-4;
 
 const CONTEXT: &str = "the damped modes";
 
-/// M, C and K.
+/// Matrices of the problem (λ²M + λC + K) x = 0.
 pub struct Quadratic<'a> {
-    /// M
+    /// Mass matrix M.
     pub mass: &'a Csc,
-    /// C, with gyroscopic forces
+    /// Damping matrix C, gyroscopic forces included.
     pub damping: &'a Csc,
-    /// K, with structural damping
+    /// Stiffness matrix K, structural damping included.
     pub stiffness: &'a Csc,
 }
 
@@ -31,7 +31,7 @@ pub struct Quadratic<'a> {
 pub type Pair = (Complex64, Vec<Complex64>);
 
 impl Quadratic<'_> {
-    /// The Hermitian part of K.
+    /// Hermitian part of K.
     pub fn hermitian_stiffness(&self) -> Result<Csc> {
         let n = self.mass.rows;
         let half = Complex64::new(0.5, 0.0);
@@ -45,8 +45,8 @@ impl Quadratic<'_> {
         )
     }
 
-    /// The eigenvalue of a mode: one that oscillates, or one that grows, which is then real; `None` for a motion that is rigid or damped
-    /// beyond vibration.
+    /// The eigenvalue, if it belongs to a mode: it oscillates, or grows and is then real. `None` for a motion that is
+    /// rigid or damped beyond vibration.
     pub fn as_mode(&self, mut eigenvalue: Complex64, shape: &[Complex64]) -> Option<Complex64> {
         if eigenvalue.im > QUADRATIC_PROBLEM_REAL * eigenvalue.norm() {
             return (!self.is_rigid(eigenvalue, shape)).then_some(eigenvalue);
@@ -58,20 +58,21 @@ impl Quadratic<'_> {
         self.grows(eigenvalue.re, shape).then_some(eigenvalue)
     }
 
-    /// Whether a motion of a real eigenvalue λ > 0 is no rigid one up to rounding: xᴴ(K + λC)x, which is −λ² xᴴMx.
+    /// Whether a motion with a real eigenvalue λ > 0 is more than a rigid motion with rounding, by xᴴ(K + λC)x, which
+    /// is −λ² xᴴMx.
     fn grows(&self, rate: f64, x: &[Complex64]) -> bool {
         let force = quadratic(self.stiffness, x) + rate * quadratic(self.damping, x);
         force < -QUADRATIC_ROUNDING * (terms(self.stiffness, x) + rate * terms(self.damping, x))
     }
 
-    /// Whether a motion is rigid up to rounding: its inertia |λ²| xᴴMx is below that of the forces. The two eigenvalues zero of a motion
-    /// that nothing holds lie apart by the root of rounding, in any direction.
+    /// Whether a motion is rigid up to rounding: its inertia |λ²| xᴴMx is below the rounding of the forces. The two
+    /// zero eigenvalues of a motion that nothing holds are apart by the root of rounding, in any direction.
     fn is_rigid(&self, eigenvalue: Complex64, x: &[Complex64]) -> bool {
         let forces = terms(self.stiffness, x) + eigenvalue.norm() * terms(self.damping, x);
         eigenvalue.norm_sqr() * quadratic(self.mass, x) <= QUADRATIC_ROUNDING * forces
     }
 
-    /// λ²M + λC + K
+    /// Matrix λ²M + λC + K at an eigenvalue λ.
     pub fn matrix(&self, eigenvalue: Complex64) -> Result<Csc> {
         Csc::sum(
             self.mass.rows,
@@ -83,7 +84,7 @@ impl Quadratic<'_> {
         )
     }
 
-    /// (2λM + C) x
+    /// Product (2λM + C) x, the slope of the matrix by λ.
     pub fn slope_times(&self, eigenvalue: Complex64, x: &[Complex64]) -> Result<Vec<Complex64>> {
         let mut y = self.damping.times(x, CONTEXT)?;
         self.mass.multiply_add(2.0 * eigenvalue, x, &mut y);
@@ -91,7 +92,7 @@ impl Quadratic<'_> {
     }
 }
 
-/// Whether two pairs are one mode.
+/// Whether two pairs are the same mode.
 pub fn is_one(a: &Pair, b: &Pair) -> bool {
     if (a.0 - b.0).norm() > ONE_VALUE * a.0.norm() {
         return false;

@@ -49,8 +49,8 @@ const QUADRATIC_SEARCH_ASIDE: f64 = 0.03;
 
 const CONTEXT: &str = "the damped modes";
 
-/// The modes of lowest frequency by a search, at least `count`, of which the first `count` are the lowest; `None` where so many were not
-/// found in a share of all eigenvalues, so that all should be solved for.
+/// Modes of lowest frequency by a search: at least `count`, the first `count` of which are the lowest. `None` where
+/// not so many were found in a share of all eigenvalues, so that all should be computed.
 ///
 /// # Errors
 /// Those of the eigensolvers.
@@ -92,24 +92,24 @@ pub fn lowest_by_search(
     Ok(Some(first.pairs))
 }
 
-/// The modes in a disc that has the lowest but for those that are far from the imaginary axis.
+/// Modes in a disc that contains the lowest ones, except those far from the imaginary axis.
 struct Disc {
     pairs: Vec<Pair>,
     shift: Complex64,
     radius: f64,
-    /// Frequency w of the last that is wanted.
+    /// Frequency w of the last requested mode.
     height: f64,
     count: usize,
 }
 
 impl Disc {
-    /// Radius of a disc about the shift that covers the strip up to w.
+    /// Radius of a disc about the shift that covers the strip up to the frequency w.
     fn needed(shift: Complex64, height: f64) -> f64 {
         let along = shift.im.max(height - shift.im);
         (BESIDE_AXIS * height + shift.re.abs()).hypot(along)
     }
 
-    /// Half width of the strip that is covered.
+    /// Half width of the strip that the disc covers.
     fn covered(&self) -> f64 {
         let along = self.shift.im.max(self.height - self.shift.im);
         let width = (self.radius.powi(2) - along.powi(2)).max(0.0).sqrt() - self.shift.re.abs();
@@ -175,7 +175,8 @@ fn first_disc(
     Ok(None)
 }
 
-/// Frequency of the mode of the number `count` without damping and gyroscopic forces, or that of a typical one where that cannot be had.
+/// Frequency of mode number `count` without damping and gyroscopic forces, or of a typical mode where this cannot be
+/// computed.
 fn estimate(problem: &Quadratic<'_>, hermitian: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Result<f64> {
     let n = problem.mass.rows;
     match lanczos::lowest(hermitian, problem.mass, count, interrupt) {
@@ -192,7 +193,7 @@ fn estimate(problem: &Quadratic<'_>, hermitian: &Csc, count: usize, interrupt: &
     Ok((sum(hermitian) / sum(problem.mass)).sqrt())
 }
 
-/// The operator at a shift, or beside it where it hits an eigenvalue.
+/// The operator at a shift, which is moved aside if it hits an eigenvalue.
 fn operator<'a>(problem: &Quadratic<'a>, shift: Complex64, interrupt: &'a Interrupt<'a>) -> Result<NearShift<'a>> {
     let matrices = [problem.mass, problem.damping, problem.stiffness];
     match NearShift::new(matrices, shift, interrupt) {
@@ -203,7 +204,7 @@ fn operator<'a>(problem: &Quadratic<'a>, shift: Complex64, interrupt: &'a Interr
     }
 }
 
-/// Modes of a rectangle beside the first disc; `None` if there are too many to be told apart.
+/// Modes of a rectangle beside the first disc; `None` if there are too many to be separated.
 fn aside(
     problem: &Quadratic<'_>,
     first: &Disc,

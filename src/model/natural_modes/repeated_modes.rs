@@ -19,13 +19,13 @@ pub enum Multiple {
     TravellingWave,
     /// The mass-weighted projection of the given shape.
     Projected,
-    /// The mode that was found first: more than two modes, or complex matrices. Another machine may find a
+    /// The first mode that was found, for more than two modes, or complex matrices. Another machine may find a
     /// different one.
     First,
 }
 
-/// The mass-normalised shape of mode number `member` among those of one frequency (`shapes`, one after the other);
-/// `projection`: components of the given shape along them.
+/// The mass-normalised shape of mode `member` among those of one frequency (`shapes`, one after the other), and the
+/// rule that chose it; `projection`: components of the given shape along these modes.
 pub(crate) fn resolve(
     pencil: &Pencil,
     shapes: &[Complex64],
@@ -78,7 +78,7 @@ pub(crate) fn resolve(
 
 const CONTEXT: &str = "the start mode";
 
-/// Makes the largest entry real and positive; the first of several of equal size.
+/// Turns a shape such that its largest entry, the first of several of equal size, is real and positive.
 fn make_largest_real(shape: &mut [Complex64]) {
     let largest = shape.iter().fold(0.0_f64, |m, z| m.max(z.norm()));
     if let Some(&z) = shape.iter().find(|z| z.norm() >= (1.0 - 1e-6) * largest) {
@@ -95,7 +95,7 @@ fn conjugate(shape: &mut [Complex64]) {
     }
 }
 
-/// (φ₁ ± iφ₂)/√2 of two modes of real matrices, in the sense of travel in which later entries lag.
+/// Travelling wave (φ₁ ± iφ₂)/√2 of two modes of real matrices, in the sense of travel in which later entries lag.
 fn lagging_wave(pencil: &Pencil, shapes: &[Complex64]) -> Result<Vec<Complex64>> {
     let n = pencil.mass.rows;
     // The modes have arbitrary phases and may be mixed: their real and imaginary parts span the space.

@@ -6,6 +6,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::dense::eigen;
 use crate::linalg::exact_sums::quadratic::about_quadratic;
 use crate::linalg::iterative::lanczos;
+use crate::linalg::libraries::{DMatrix, Schur};
 use crate::linalg::sparse_storage::held_rows::MovingRows;
 use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::Model;
@@ -13,15 +14,15 @@ use crate::model::matrices::structure::MatrixKind;
 use crate::model::matrices::wave::Wave;
 use crate::model::natural_modes::linear_modes::ContactState;
 use crate::model::natural_modes::quadratic_problem::Quadratic;
-use nalgebra::{DMatrix, Schur};
+use crate::options::Range;
 use num_complex::Complex64;
 
 /// A pole p = ω + iσ of the response.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resonance {
-    /// Angular frequency.
+    /// Angular frequency ω of the resonance.
     pub omega: f64,
-    /// Half width: the response is 1/√2 of its peak at ω ± σ. Zero without damping.
+    /// Half width σ: the response is 1/√2 of its peak at ω ± σ. Zero without damping.
     pub half_width: f64,
 }
 
@@ -30,7 +31,7 @@ pub struct Resonance {
 const RESONANCES_UNDAMPED: f64 = 1e-13;
 
 impl Resonance {
-    /// Whether nothing but rounding damps it.
+    /// Whether the half width is rounding.
     pub fn is_undamped(&self) -> bool {
         self.half_width <= RESONANCES_UNDAMPED * self.omega
     }
@@ -83,7 +84,7 @@ impl Model {
     #[doc(hidden)]
     pub fn forced_resonances(
         &self,
-        range: (f64, f64),
+        range: Range,
         contacts: ContactState<'_>,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Vec<Resonance>>> {
@@ -114,11 +115,11 @@ impl Model {
     pub fn resonances(
         &self,
         h: usize,
-        (low, high): (f64, f64),
+        range: Range,
         contacts: ContactState<'_>,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Vec<Resonance>>> {
-        match self.damped_frequencies(h, (low, high), contacts, interrupt) {
+        match self.damped_frequencies(h, range, contacts, interrupt) {
             Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => Err(e),
             found => Ok(found.ok().flatten()),
         }
@@ -127,7 +128,7 @@ impl Model {
     fn damped_frequencies(
         &self,
         h: usize,
-        (low, high): (f64, f64),
+        range: Range,
         contacts: ContactState<'_>,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Vec<Resonance>>> {
@@ -146,11 +147,11 @@ impl Model {
                 damping: &structure.wave_matrix(MatrixKind::Damping, h)?,
                 stiffness: &stiffness,
             };
-            return gyroscopic_frequencies(h, (low, high), &problem, interrupt);
+            return gyroscopic_frequencies(h, range, &problem, interrupt);
         }
         damped_frequencies(
             h,
-            (low, high),
+            range,
             (&stiffness, &mass),
             || structure.wave_matrix(MatrixKind::Damping, h),
             interrupt,
@@ -165,10 +166,11 @@ impl Model {
 /// Those of the eigensolvers.
 pub fn gyroscopic_frequencies(
     h: usize,
-    (low, high): (f64, f64),
+    range: Range,
     problem: &Quadratic<'_>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<Vec<Resonance>>> {
+    let (low, high) = (range.low(), range.high());
     let n = problem.mass.rows;
     let number = h as f64;
     let mut count = if n > RESONANCES_DENSE_UP_TO { FIRST_MODES } else { n };
@@ -205,14 +207,15 @@ pub fn gyroscopic_frequencies(
 /// Those of the eigensolvers.
 pub fn damped_frequencies(
     h: usize,
-    (low, high): (f64, f64),
+    range: Range,
     (stiffness, mass): (&Csc, &Csc),
     damping: impl FnOnce() -> Result<Csc>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<Vec<Resonance>>> {
+    let (low, high) = (range.low(), range.high());
     let (hermitian, skew) = parts(stiffness)?;
     let number = h as f64;
-    let Some(modes) = modes_within(&hermitian, mass, (low * number, high * number), interrupt)? else {
+    let Some(modes) = modes_within(&hermitian, mass, Range::new(low * number, high * number), interrupt)? else {
         return Ok(None);
     };
     let mut frequencies = Vec::new();
@@ -241,7 +244,7 @@ pub fn damped_frequencies(
     Ok(Some(found))
 }
 
-/// The Hermitian part of K, and −i times the skew one.
+/// Hermitian part of K; and its skew-Hermitian part times −i.
 fn parts(k: &Csc) -> Result<(Csc, Csc)> {
     let half = Complex64::new(0.5, 0.0);
     let turned = Complex64::new(0.0, -0.5);
@@ -252,10 +255,11 @@ fn parts(k: &Csc) -> Result<(Csc, Csc)> {
     Ok((combine(half, half)?, combine(turned, -turned)?))
 }
 
-/// All modes within a range of frequencies, and some others; `None` if there are too many of them.
-fn modes_within(k: &Csc, m: &Csc, (low, high): (f64, f64), interrupt: &Interrupt<'_>) -> Result<Option<eigen::Pairs>> {
+/// All modes within a range of frequencies, and some others; `None` if there are too many.
+fn modes_within(k: &Csc, m: &Csc, range: Range, interrupt: &Interrupt<'_>) -> Result<Option<eigen::Pairs>> {
+    let (low, high) = (range.low(), range.high());
     if let Some(moving) = MovingRows::of(k)? {
-        let pairs = modes_within(&moving.reduced(k)?, &moving.reduced(m)?, (low, high), interrupt)?;
+        let pairs = modes_within(&moving.reduced(k)?, &moving.reduced(m)?, range, interrupt)?;
         return pairs.map(|pairs| moving.expanded_pairs(pairs)).transpose();
     }
     let n = k.rows;
@@ -283,14 +287,14 @@ fn modes_within(k: &Csc, m: &Csc, (low, high): (f64, f64), interrupt: &Interrupt
     eigen::generalised(&dense(k), &dense(m), interrupt).map(Some)
 }
 
-/// The damping from which half widths follow.
+/// Damping matrices, from which half widths follow.
 struct Widths {
     damping: Csc,
     skew: Csc,
 }
 
 impl Widths {
-    /// φᴴ(C + Im K/ω)φ between two shapes.
+    /// Coupling φᴴ(C + Im K/ω)φ of two shapes by damping.
     fn between(&self, a: &[Complex64], b: &[Complex64], omega: f64) -> Result<Complex64> {
         let mut sum = Complex64::ZERO;
         for (matrix, factor) in [(&self.damping, 1.0), (&self.skew, omega.recip())] {
@@ -370,7 +374,7 @@ mod tests {
             model.set_matrix(kind, &MatrixView::dense(2, &values)).unwrap();
         }
         let found = model
-            .resonances(1, (0.5, 2.0), ContactState::Stuck, &Interrupt::none())
+            .resonances(1, (0.5, 2.0).into(), ContactState::Stuck, &Interrupt::none())
             .unwrap()
             .unwrap();
         let mut widths: Vec<f64> = found.iter().map(|r| r.half_width).collect();
@@ -378,7 +382,7 @@ mod tests {
         assert!(widths[0] < 1e-9 && (widths[1] - 1e-3).abs() < 1e-9, "{found:?}");
         // In the second harmonic at half the frequency.
         let second = model
-            .resonances(2, (0.4, 0.6), ContactState::Stuck, &Interrupt::none())
+            .resonances(2, (0.4, 0.6).into(), ContactState::Stuck, &Interrupt::none())
             .unwrap()
             .unwrap();
         assert!(second.len() == 2 && (second[0].omega - 0.5).abs() < 1e-6);

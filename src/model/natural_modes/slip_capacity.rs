@@ -30,11 +30,11 @@ use std::f64::consts::PI;
 /// A motion that the structure without its contacts does not resist at a harmonic of the frequency.
 #[derive(Clone, Debug)]
 pub struct Resonance {
-    /// Harmonic number h.
+    /// Number h of the harmonic.
     pub harmonic: usize,
     /// The motion φ, its largest component of modulus 1.
     pub shape: Vec<Complex64>,
-    /// Force along φ, |φᴴ F|.
+    /// Modulus |φᴴ F| of the force along φ.
     pub force: f64,
     /// Largest part of the force that the contacts can balance; infinite if one of them has an unbounded force.
     pub slip_capacity: f64,
@@ -68,8 +68,8 @@ impl Resonance {
 }
 
 impl Model {
-    /// The resonance without damping that keeps the model from a bounded response at the angular frequency `omega`,
-    /// if one is found.
+    /// The undamped resonance because of which the model has no bounded response at the angular frequency `omega`, if
+    /// one is found.
     ///
     /// # Errors
     /// `OutOfMemory`, and those of [`Self::sprung_stiffness`]; `StoppedByCaller`.
@@ -90,7 +90,7 @@ impl Model {
         Ok(None)
     }
 
-    /// The forced motion nearest to one that the structure without its contacts does not resist in `harmonic` of
+    /// The motion nearest to the forced one that the structure without its contacts does not resist in `harmonic` of
     /// `omega`; `None` where inverse iteration finds none.
     ///
     /// # Errors
@@ -174,8 +174,8 @@ impl Model {
     }
 }
 
-/// φ with φᴴ Z = 0 up to rounding, by inverse iteration φ ← S⁻ᴴ M φ from the force, with S = Z − ε M; the limit
-/// does not depend on ε. `None` where the iteration finds none.
+/// Motion φ with φᴴ Z = 0 up to rounding, by inverse iteration φ ← S⁻ᴴ M φ from the force, with S = Z − ε M; the
+/// limit does not depend on ε. `None` where the iteration finds none.
 fn left_null(
     shifted: &Csc,
     mass: &Csc,

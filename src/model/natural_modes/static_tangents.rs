@@ -5,12 +5,12 @@ use crate::error::{Error, Result, try_copy};
 /// Tangent stiffness of each contact that may slip or open, at a static motion; in the caller's units.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StaticTangents {
-    /// Per contact a square matrix, row-major, of its directions; empty for contacts that are linear.
+    /// Per contact the tangent stiffness over its directions, a square matrix, row-major; empty for linear contacts.
     of_contacts: Vec<Vec<f64>>,
 }
 
 impl StaticTangents {
-    /// No tangents of `contacts` contacts yet.
+    /// Empty tangents for `contacts` contacts.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -23,7 +23,7 @@ impl StaticTangents {
         Ok(Self { of_contacts })
     }
 
-    /// A copy, allocated fallibly.
+    /// A copy that returns an error if memory is short.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -35,7 +35,7 @@ impl StaticTangents {
         Ok(copy)
     }
 
-    /// The symmetric part of each tangent: forces without a potential left out.
+    /// The symmetric part of each tangent, without forces that have no potential.
     ///
     /// # Errors
     /// `OutOfMemory`.

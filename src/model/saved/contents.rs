@@ -6,20 +6,20 @@ use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
 use crate::model::Model;
 use crate::model::matrices::structure::MatrixKind;
 
-/// A block of a matrix by the sectors of its columns.
+/// A block of a matrix, by the sector of its columns relative to the sector of its rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Block {
-    /// Rows and columns of the same sector: all of a plain structure.
+    /// Rows and columns of one sector; for a plain structure the whole matrix.
     Own,
-    /// Columns of the next sector.
+    /// Rows of one sector and columns of the next one.
     Next,
-    /// Columns of the previous sector, where it is not the transpose of [`Self::Next`].
+    /// Rows of one sector and columns of the previous one, where this is not the transpose of [`Self::Next`].
     Previous,
 }
 
 impl Model {
-    /// A block of a matrix over the independent degrees of freedom; `None` where it was not given, and is zero (a block
-    /// to the previous sector: the transpose of that to the next one).
+    /// A block of a matrix over the independent degrees of freedom. `None` where it was not given: it is then zero,
+    /// or for the block to the previous sector the transpose of the block to the next one.
     ///
     /// # Errors
     /// `Unsupported` for a matrix that was given per nodal diameter.
@@ -41,7 +41,7 @@ impl Model {
         .as_ref())
     }
 
-    /// Normal load N₀ and its coefficient c of a contact under N₀ + cΩ², and its gap, as they were given; `None` for an
+    /// Normal load N₀, coefficient c of its growth N₀ + cΩ², and gap of a contact, as they were given; `None` for an
     /// unknown contact.
     #[must_use]
     pub fn given_load(&self, id: usize) -> Option<(f64, f64, f64)> {

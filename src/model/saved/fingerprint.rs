@@ -15,15 +15,15 @@ use crate::model::saved::saved_matrix;
 use crate::model::saved::saved_structure::save_degrees;
 use crate::model::wheels::sector_digest::{SectorDigest, SectorUse};
 
-/// A number for each part of a model.
+/// Digests of the parts of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fingerprint {
-    /// Degrees of freedom, sectors, faces, and what is fixed.
+    /// Digest of degrees of freedom, sectors, faces, and fixed degrees of freedom.
     degrees: u64,
-    /// Mass and stiffness, and the matrices of rotation.
+    /// Digest of mass and stiffness, and the matrices of rotation.
     matrices: u64,
     speed: u64,
-    /// Every kind of damping, and the aerodynamic influence.
+    /// Digest of every kind of damping, and the aerodynamic influence.
     damping: u64,
     springs: u64,
     contacts: u64,
@@ -32,22 +32,23 @@ pub struct Fingerprint {
     engine_order: i64,
 }
 
-/// Use of a model beside a branch.
+/// How a model is used together with a branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Use {
-    /// At a point of a forced response: all of the model counts.
+    /// With a point of a forced response: all of the model counts.
     Response,
-    /// At a point of a nonlinear mode: neither vibrating forces nor, where the mode has a diameter of its own, the wave.
+    /// With a point of a nonlinear mode: vibrating forces do not count and, where the mode has its own diameter,
+    /// neither does the wave.
     Mode {
-        /// Whether the mode has the wave of the model.
+        /// Whether the mode belongs to the wave of the model.
         on_wave: bool,
     },
-    /// In a synthesis, which has vibrating forces and may have damping of its own.
+    /// For a synthesis, which has vibrating forces and may have its own damping.
     Synthesis,
 }
 
 impl Fingerprint {
-    /// Refuses a model that is not the one of a branch, naming the part that differs.
+    /// Refuses a model that differs from the one of a branch, and names the part that differs.
     ///
     /// # Errors
     /// `Argument`.
@@ -76,7 +77,7 @@ impl Fingerprint {
     }
 }
 
-/// The digest of what is written.
+/// Digest of the bytes that `write` writes.
 fn digest(write: impl FnOnce(&mut ByteWriter<'_>)) -> u64 {
     let mut out = ByteWriter::digesting();
     write(&mut out);
@@ -176,7 +177,7 @@ impl Model {
         }
     }
 
-    /// Writes every damping but that by numbers.
+    /// Writes every kind of damping that is not a plain number.
     fn damping_matrices_to(&self, out: &mut ByteWriter<'_>) {
         self.blocks_to(&[MatrixKind::Damping, MatrixKind::Structural], out);
         saved_matrix::save_list(&self.structure.modal_damping, out);
@@ -195,7 +196,8 @@ impl Model {
         }
     }
 
-    /// Refuses a sector that is not the one that this wheel was made of. A wheel from bytes does not know it.
+    /// Refuses a sector other than the one of which this wheel was made. A wheel loaded from bytes of an earlier
+    /// version does not know its sector.
     ///
     /// # Errors
     /// `Argument`, naming the part that differs.
@@ -219,7 +221,7 @@ impl Model {
 }
 
 impl Contact {
-    /// Writes what decides about results; a law of the caller by what its program tells of it.
+    /// Writes the data of a contact that affect results; for a law of the caller those that its program supplies.
     fn digest_to(&self, out: &mut ByteWriter<'_>) {
         self.kind.digest_to(out);
         self.places_to(out);

@@ -14,7 +14,7 @@ const NONE: u8 = 0;
 const SAVED_MATRIX_REAL: u8 = 1;
 const COMPLEX: u8 = 2;
 
-/// Writes a matrix, or that there is none.
+/// Writes a matrix, or a mark that there is none.
 pub(crate) fn save(matrix: Option<&KeptMatrix>, out: &mut ByteWriter<'_>) {
     let Some(a) = matrix else {
         out.u8(NONE);
@@ -38,7 +38,7 @@ pub(crate) fn save(matrix: Option<&KeptMatrix>, out: &mut ByteWriter<'_>) {
     }
 }
 
-/// Reads a matrix of order n, or that there is none.
+/// Reads a matrix of order n, or the mark that there is none.
 ///
 /// # Errors
 /// `Argument` where it is none of compressed sparse columns; `OutOfMemory`.
@@ -93,7 +93,7 @@ pub(crate) fn save_list(matrices: &[Option<KeptMatrix>], out: &mut ByteWriter<'_
     }
 }
 
-/// Reads a list of matrices of one of `lengths`, or none at all.
+/// Reads a list of matrices whose length is one of `lengths`; it may be empty.
 ///
 /// # Errors
 /// As [`load`]; `Argument` for another length.

@@ -19,7 +19,7 @@ use crate::model::mechanical_model::Model;
 use crate::model::wheels::sector_digest::SectorDigest;
 use num_complex::Complex64;
 
-/// First bytes of a saved model. A transfer as text changes some of them.
+/// First bytes of a saved model. A file transfer in text mode would change some of them.
 const MARK: [u8; 8] = *b"\x89HBVIB\r\n";
 
 /// Version of the format.
@@ -56,7 +56,8 @@ impl Model {
         Ok(bytes)
     }
 
-    /// Writes the model into a buffer and returns its length in bytes. A buffer that is too short has no model.
+    /// Writes the model into a buffer and returns its length in bytes. A buffer that is too short holds no model
+    /// afterwards.
     ///
     /// # Errors
     /// `Unsupported` for a model with a law of the caller, naming the contact.
@@ -89,8 +90,8 @@ impl Model {
         Ok(length + TAIL)
     }
 
-    /// The model of bytes that [`Model::save`] made. Memory is taken in proportion to the bytes at most, whatever they
-    /// are.
+    /// The model from bytes that [`Model::save`] made. Memory is requested at most in proportion to the number of
+    /// bytes, whatever they contain.
     ///
     /// # Errors
     /// `Argument` for bytes that are no saved model, or a damaged or incomplete one; `Unsupported` for one of a newer
@@ -169,12 +170,12 @@ impl Model {
         Ok(())
     }
 
-    /// Whether a contact is at a rigid body, or a force follows the speed.
+    /// Whether a contact is attached to a rigid body, or a force follows the speed.
     fn has_bodies(&self) -> bool {
         self.contacts.iter().any(|contact| contact.rigid.is_some()) || self.excitation.has_centrifugal()
     }
 
-    /// Whether the place of a slider is given.
+    /// Whether some slider has an initial place.
     fn has_places(&self) -> bool {
         self.contacts.iter().any(Contact::is_placed)
     }
@@ -275,7 +276,7 @@ impl Model {
     }
 }
 
-/// The bytes of the model itself and the version of their format, their frame checked.
+/// The bytes of the model itself and the version of the format, after a check of the frame.
 fn content(bytes: &[u8]) -> Result<(&[u8], u32)> {
     if bytes.len() < MARK.len() || !bytes.starts_with(&MARK) {
         return fail!(

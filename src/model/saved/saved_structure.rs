@@ -17,7 +17,7 @@ const CONTEXT: &str = "a loaded structure";
 const SAVED_STRUCTURE_UNIT: f64 = 1e-9;
 
 impl Structure {
-    /// Writes the structure.
+    /// Writes the structure as bytes.
     pub(crate) fn save_to(&self, out: &mut ByteWriter<'_>) {
         out.count(self.degrees.given());
         out.count(self.sectors);
@@ -41,7 +41,7 @@ impl Structure {
         saved_matrix::save_list(&self.modal_damping, out);
     }
 
-    /// Reads a structure.
+    /// Reads a structure from bytes.
     ///
     /// # Errors
     /// `Argument` for bytes that are no structure, and those of [`Structure::new`] and of the faces of a sector.

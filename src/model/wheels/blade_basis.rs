@@ -21,26 +21,26 @@ const BLADE_PART_IS_ROUNDING: f64 = 1e-6;
 /// Kind: rounding.
 const BLADE_MIRROR_ROUNDING: f64 = 1e-10;
 
-/// x_b = D (x_r, q).
+/// Basis D of a blade's motion x_b = D (x_r, q).
 #[derive(Debug)]
 pub(crate) struct Basis {
-    /// Place in the blade of each independent degree of freedom.
+    /// For each independent degree of freedom, its position in the blade; `None` outside.
     pub place: Vec<Option<usize>>,
-    /// Number in the reduced sector of each independent degree of freedom of the rest.
+    /// For each independent degree of freedom of the rest, its number in the reduced sector; `None` in the blade.
     pub number: Vec<Option<usize>>,
-    /// Degrees of freedom of the blade.
+    /// Number of degrees of freedom of the blade.
     pub blade: usize,
-    /// Columns of D: their numbers in the reduced sector, and their values, column after column.
+    /// Columns of D: their numbers in the reduced sector; and their values, column after column.
     pub columns: Vec<usize>,
     pub values: Vec<Complex64>,
-    /// Squares of the frequencies of the modes, and that of the first mode that is left out.
+    /// Squared frequencies of the cantilever modes; and that of the first mode that is left out.
     pub squares: Vec<f64>,
     pub next_square: f64,
-    /// Order of the reduced sector.
+    /// Number of degrees of freedom of the reduced sector.
     pub order: usize,
 }
 
-/// Independent number of a degree of freedom that moves in its own sector.
+/// Index among the independent degrees of freedom of one that must move in its own sector.
 pub(crate) fn independent(model: &Model, dof: usize) -> Result<usize> {
     let degrees = model.structure().degrees();
     if dof >= degrees.given() {
@@ -136,12 +136,12 @@ impl Basis {
         })
     }
 
-    /// Number of columns that belong to the rest.
+    /// Number of columns that follow the rest of the sector.
     fn static_columns(&self) -> usize {
         self.columns.len() - self.squares.len()
     }
 
-    /// DᵀAD among the columns and A for the rest.
+    /// Reduced matrix: DᵀAD among the columns, and A for the rest.
     pub fn reduced(&self, a: &KeptMatrix, kind: MatrixKind, interrupt: &Interrupt<'_>) -> Result<Csc> {
         let (nb, nc) = (self.blade, self.columns.len());
         let mut entries = Vec::new();
@@ -199,7 +199,7 @@ impl Basis {
         )
     }
 
-    /// A coupling to another sector, which no blade has.
+    /// Renumbers a coupling to another sector, in which no blade has entries.
     pub fn renumbered(&self, a: &KeptMatrix, kind: MatrixKind) -> Result<Csc> {
         let mut entries = Vec::new();
         for j in 0..a.order() {
@@ -217,8 +217,8 @@ impl Basis {
         Csc::from_triplets(self.order, self.order, entries)
     }
 
-    /// Largest relative error of a frequency by the modes that are left out: with the residual r = (K − ω²M) x of a mode at the blade,
-    /// those add −rᴴK_bb⁻¹r / (1 − ω²/Λ_next) to ω², whose half is the relative error of ω.
+    /// Largest relative error of a frequency by the modes that are left out. With the residual r = (K − ω²M) x of a
+    /// mode at the blade, these add −rᴴK_bb⁻¹r / (1 − ω²/Λ_next) to ω², half of which is the relative error of ω.
     pub fn left_out(&self, given: &Model, reduced: &Model, families: usize, interrupt: &Interrupt<'_>) -> Result<f64> {
         let nb = self.blade;
         let structure = given.structure();
@@ -260,8 +260,9 @@ impl Basis {
     }
 }
 
-/// Appends real modes of unit mass to the columns, and returns the squares of their frequencies. The phase of a mode is arbitrary, and so
-/// is the mixture of modes of one frequency: real and imaginary parts are modes, as far as they are not there already.
+/// Appends real modes of unit mass to the columns, and returns their squared frequencies. The phase of a mode is
+/// arbitrary, as is the mixture of modes of one frequency: real and imaginary parts are taken as modes, unless they
+/// are combinations of former ones.
 fn add_real_modes(found: &LinearModes, count: usize, mass: &Csc, columns: &mut Vec<Complex64>) -> Result<Vec<f64>> {
     let (n, first) = (mass.rows, columns.len());
     let mut squares = Vec::new();
@@ -299,7 +300,8 @@ fn add_real_modes(found: &LinearModes, count: usize, mass: &Csc, columns: &mut V
     Ok(squares)
 }
 
-/// A matrix among the degrees of freedom of a blade, and its entries (place, independent number of another, value).
+/// A matrix on the degrees of freedom of a blade; and its entries between blade and rest: position in the blade,
+/// independent degree of freedom of the rest, value.
 #[allow(clippy::type_complexity)]
 fn of_blade(
     structure: &Structure,

@@ -26,17 +26,18 @@ const KINDS: [MatrixKind; 6] = [
     MatrixKind::StiffnessSpeed2,
 ];
 
-/// A sector on modes of its blade.
+/// A sector reduced to modes of its blade.
 #[derive(Debug)]
 pub struct BladeModes {
-    /// The reduced sector: first the degrees of freedom that are left, in their order, then the modes of the blade.
+    /// The reduced sector: first the remaining degrees of freedom, in their order, then the modes of the blade.
     pub model: Model,
-    /// Number there of each degree of freedom of the given sector; `None` for those of the blade, of the right face, and fixed ones.
+    /// For each degree of freedom of the given sector its number in the reduced one; `None` for those of the blade,
+    /// of the right face, and fixed ones.
     pub numbers: Vec<Option<usize>>,
-    /// Number of the first mode.
+    /// Number of the first mode in the reduced sector.
     pub first: usize,
-    /// Largest relative error of a frequency that the modes which are left out cause, as estimated, in the tuned modes that were asked for
-    /// of all nodal diameters. Infinite where one lies above the first mode that is left out.
+    /// Estimate of the largest relative error of a frequency by the omitted modes, over the requested tuned modes of
+    /// all nodal diameters. Infinite where one lies above the first omitted mode.
     pub left_out: f64,
     basis: Basis,
 }
@@ -63,9 +64,9 @@ impl BladeModes {
 }
 
 impl Model {
-    /// The sector with the blade of `dofs` on its `modes` lowest cantilever modes: with everything else held. `dofs` are all degrees of
-    /// freedom of the blade but those of its root and those with contacts and springs; forces may act on them. The error is that of
-    /// `families` tuned modes of each nodal diameter.
+    /// Reduces a sector to the `modes` lowest cantilever modes of the blade `dofs`: modes with everything else held.
+    /// `dofs` are all degrees of freedom of the blade except those of its root and those with contacts and springs;
+    /// forces may act on them. The error is estimated for `families` tuned modes of each nodal diameter.
     ///
     /// # Errors
     /// `Index` or `Argument` for degrees of freedom that cannot be in a blade, naming them, and for numbers of modes; `Unsupported` for
@@ -123,7 +124,7 @@ impl Model {
     }
 }
 
-/// Damping by numbers, wave and speed.
+/// Copies damping factors, wave and speed from one structure to another.
 fn copy_numbers(from: &Structure, to: &mut Structure) {
     to.rayleigh = from.rayleigh;
     to.loss_factor = from.loss_factor;
@@ -133,7 +134,7 @@ fn copy_numbers(from: &Structure, to: &mut Structure) {
 }
 
 impl Basis {
-    /// Contacts, springs, loads and forces in the numbers of the reduced sector.
+    /// Copies contacts, springs, loads and forces, renumbered for the reduced sector.
     fn move_places(&self, from: &Model, to: &mut Model) -> Result<()> {
         let moved = |what: &str, id: usize, dof: usize| match independent(from, dof).map(|number| self.number[number]) {
             Ok(Some(number)) => Ok(number),

@@ -30,7 +30,7 @@ impl Structure {
         self.in_step()
     }
 
-    /// The number j of sectors, below [`Self::repeating_sectors`] n, after which the motion is delayed by the n-th
+    /// The number j of sectors, below n = [`Self::repeating_sectors`], after which the motion is delayed by the n-th
     /// part of the period: x_{s+j}(t + T/n) = x_s(t). It solves j·EO/g = 1 modulo n.
     pub fn sectors_per_part(&self) -> usize {
         let n = self.repeating_sectors();
@@ -100,7 +100,7 @@ impl Structure {
         Ok(own)
     }
 
-    /// One matrix as it was given.
+    /// One matrix as the caller gave it, without derived parts, for the sectors of the ring.
     pub(crate) fn given_around(&self, which: MatrixKind, interrupt: &Interrupt<'_>) -> Result<Csc> {
         if self.blocks[which as usize].diameters.is_empty() {
             self.sectors_around(which, interrupt)
@@ -109,7 +109,7 @@ impl Structure {
         }
     }
 
-    /// Places the blocks of a sector around the ring.
+    /// Assembles the blocks of a sector around the ring.
     fn sectors_around(&self, which: MatrixKind, interrupt: &Interrupt<'_>) -> Result<Csc> {
         let (ndof, sectors) = (self.ndof(), self.repeating_sectors());
         let blocks = &self.blocks[which as usize];

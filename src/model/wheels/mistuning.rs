@@ -29,25 +29,25 @@ const LARGEST_ATTACHMENT: usize = 4_000_000;
 /// Kind: rounding.
 const MIRROR_ROUNDING: f64 = 1e-10;
 
-/// A property of the blades.
+/// Property of the blades that differs between sectors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BladeProperty {
-    /// Stiffness times 1 + δ.
+    /// Stiffness of the blade, times 1 + δ.
     Stiffness,
-    /// Frequencies of the blade, clamped where it is attached, times 1 + δ: stiffness times (1 + δ)².
+    /// Frequencies of the blade when clamped at its attachment, times 1 + δ: stiffness times (1 + δ)².
     Frequency,
-    /// Mass of the degrees of freedom of the blade times 1 + δ, without coupling to others.
+    /// Mass of the blade's degrees of freedom, without coupling to others, times 1 + δ.
     Mass,
     /// Damping of the motion relative to the attachment times 1 + δ: damping matrix and Rayleigh damping.
     Damping,
 }
 
-/// One of the quantities that differ between sectors.
+/// Quantity that differs between sectors, with its pattern δ.
 #[derive(Clone, Copy, Debug)]
 pub enum Mistuning<'a> {
     /// A property of the blade with these degrees of freedom of a sector.
     Blade(BladeProperty, &'a [usize]),
-    /// δ times a matrix of a sector is added to that of the sector.
+    /// A matrix of a sector, δ times which is added to the matrix of that kind.
     Matrix(MatrixKind, &'a MatrixView<'a>),
     /// Normal load of a contact of each sector, or of all that have one, times 1 + δ.
     Preload(Option<usize>),
@@ -56,8 +56,8 @@ pub enum Mistuning<'a> {
 }
 
 impl Model {
-    /// Mistunes a wheel: δ_s of each sector s of the cyclic model of which [`Model::wheel`] made it. Changes of matrices
-    /// refer to the cyclic model, and several calls add up; loads and forces are multiplied.
+    /// Mistunes a wheel by a value δ_s for each sector s; `sector` is the cyclic model of which [`Model::wheel`] made
+    /// it. Changes of matrices refer to the cyclic model, and several calls add up; loads and forces are multiplied.
     ///
     /// # Errors
     /// `Dimension` for another number of sectors, or another model; `NotFinite`; `Index`; `Argument` or `Unsupported`,
@@ -182,7 +182,7 @@ impl Model {
 }
 
 impl Structure {
-    /// Entries of a matrix of a sector that a caller gives.
+    /// Entries of a matrix that the caller gives for a sector.
     pub(crate) fn of_direction(&self, kind: MatrixKind, direction: &MatrixView<'_>) -> Result<Entries> {
         if matches!(kind, MatrixKind::Gyroscopic | MatrixKind::StiffnessSpeed2) {
             return fail!(
@@ -319,7 +319,7 @@ fn around(of_sector: &Csc, n: usize, factors: &[f64]) -> Result<Csc> {
     })
 }
 
-/// Entries of Tᵀ A T with y = T x = x_b + X x_r.
+/// Entries of Tᵀ A T, where y = T x = x_b + X x_r.
 fn relative(form: &Csc, x: &[Complex64], blade: &[usize], root: &[usize]) -> Result<Entries> {
     let nb = blade.len();
     let mut entries = Vec::new();

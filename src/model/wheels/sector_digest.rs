@@ -2,35 +2,35 @@
 
 use crate::error::{Result, fail};
 
-/// A number for each part of a sector that a wheel is made of: equal for equal contents. Contacts, forces, the speed and damping by
-/// numbers are not among them, as they may be changed on both sides.
+/// Digests of the parts of the sector of which a wheel is made: equal for equal contents. Contacts, forces, the speed
+/// and damping by numbers are left out, as they may be changed on both sides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SectorDigest {
-    /// Degrees of freedom, sectors, faces, and what is fixed.
+    /// Digest of degrees of freedom, sectors, faces, and fixed degrees of freedom.
     pub degrees: u64,
-    /// Mass and stiffness, and the matrices of rotation.
+    /// Digest of mass and stiffness, and the matrices of rotation.
     pub matrices: u64,
-    /// Matrices of damping, modal damping and the aerodynamic influence.
+    /// Digest of the matrices of damping, modal damping and the aerodynamic influence.
     pub damping: u64,
-    /// Springs.
+    /// Digest of the springs.
     pub springs: u64,
     /// Engine order of the forces.
     pub engine_order: i64,
 }
 
-/// Use of a sector beside its wheel.
+/// How a sector is used together with its wheel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SectorUse {
-    /// Patterns of mass and stiffness, and those of loads and forces.
+    /// For patterns of mass, stiffness, loads and forces.
     Pattern,
-    /// Patterns of damping.
+    /// For patterns of damping.
     DampingPattern,
-    /// The response of the tuned wheel: all parts count.
+    /// For the response of the tuned wheel: all parts count.
     Tuned,
 }
 
 impl SectorDigest {
-    /// Refuses a sector that is not the one of the wheel, naming the part that differs.
+    /// Refuses a sector other than the one of the wheel, and names the part that differs.
     ///
     /// # Errors
     /// `Argument`.

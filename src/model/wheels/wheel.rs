@@ -85,7 +85,8 @@ impl Model {
 }
 
 impl Model {
-    /// Refuses relative motions with a sector whose Cartesian axes are turned: the side there would need a direction of its own.
+    /// Refuses contacts with a sector whose Cartesian axes are turned: the side in that sector would need its own
+    /// direction.
     fn check_axes(&self) -> Result<()> {
         let Some(faces) = self.structure().degrees().faces() else {
             return Ok(());
@@ -112,7 +113,7 @@ impl Model {
 }
 
 impl Structure {
-    /// The matrices of all sectors.
+    /// The structure of all sectors, with its matrices.
     fn whole(&self, interrupt: &Interrupt<'_>) -> Result<Self> {
         let sectors = self.sectors();
         if sectors == 1 {
@@ -163,7 +164,7 @@ impl Structure {
         Ok(wheel)
     }
 
-    /// A copy whose wave repeats after all sectors.
+    /// A copy whose wave repeats only after all sectors.
     pub(crate) fn around_ring(&self) -> Result<Self> {
         let mut ring = self.try_clone()?;
         ring.engine_order = 1;
@@ -209,7 +210,7 @@ impl Structure {
     }
 }
 
-/// The symmetric matrix where only `rounding`, relative to the largest entry, separates it from that.
+/// The matrix made exactly symmetric, where only `rounding`, relative to its largest entry, keeps it from being so.
 pub(crate) fn symmetrised(a: Csc, rounding: f64) -> Result<Csc> {
     let (_, _, gap) = a.worst_pair(Symmetry::Plain);
     if gap > rounding * a.max_abs() {
@@ -219,12 +220,12 @@ pub(crate) fn symmetrised(a: Csc, rounding: f64) -> Result<Csc> {
     Csc::sum(a.cols, &[(half, &a, Form::Plain), (half, &a, Form::Transposed)])
 }
 
-/// The sector at a distance.
+/// Index of the sector at a distance from sector s.
 fn neighbour(s: usize, offset: i64, sectors: usize) -> usize {
     (s as i128 + i128::from(offset)).rem_euclid(sectors as i128) as usize
 }
 
-/// A contact in sector s of the wheel.
+/// Copy of a contact for sector s of the wheel.
 fn placed(contact: &Contact, s: usize, n: usize, sectors: usize) -> Result<Contact> {
     let next = neighbour(s, contact.sector_offset, sectors);
     let mut placed = copy(contact)?;

@@ -5,10 +5,10 @@
 
 use crate::error::Result;
 use crate::linalg::add_product;
+use crate::linalg::libraries::{Simd, WithSimd};
 use crate::problem::contact_forces::ContactForces;
 use core::ops::Range;
 use num_complex::Complex64;
-use pulp::{Simd, WithSimd};
 
 /// Term added to the diagonal of the means in Newton's matrix, not in the residual. A slipping contact does not
 /// resist a mean motion; where nothing else does, as for a ring free to turn, the mean is indeterminate and the
@@ -21,8 +21,8 @@ const MEAN_FLOOR: f64 = 1e-8;
 const COUPLING_BETWEEN_CHECKS: usize = 16;
 
 impl ContactForces<'_> {
-    /// Whether a coordinate sticks, or along a normal is closed, and its reference stiffness is that of the contact:
-    /// then ∂f/∂y = κ, and no change couples back.
+    /// Whether a coordinate is eliminated from Newton's equations: it sticks or, along a normal, is closed, and its
+    /// reference stiffness equals that of the contact. Then ∂f/∂y = κ, and no change couples back.
     #[must_use]
     #[inline]
     pub fn is_eliminated(&self, coordinate: usize) -> bool {
@@ -35,7 +35,8 @@ impl ContactForces<'_> {
         self.other.is_some()
     }
 
-    /// Whether in addition f = κ y, so that nothing couples back at all; a normal load at rest does.
+    /// Whether an eliminated coordinate also has f = κ y, so that its force does not enter the residual; with a
+    /// static normal load it does.
     #[must_use]
     #[inline]
     pub fn is_inactive(&self, coordinate: usize) -> bool {
@@ -61,7 +62,7 @@ impl ContactForces<'_> {
             .any(|(force, _)| !self.is_eliminated(force))
     }
 
-    /// Change of w in the i-th carried harmonic along a change of the motion.
+    /// Change of w = f − κ y in the i-th carried harmonic along a change of the motion.
     #[must_use]
     pub fn along(&self, direction: &[f64], coordinate: usize, i: usize) -> Complex64 {
         let set = self.condensed.set();
@@ -81,8 +82,8 @@ impl ContactForces<'_> {
         dw
     }
 
-    /// Change of w in all carried harmonics of a coordinate along a change of the motion, with all forces, eliminated
-    /// or not.
+    /// Change of w = f − κ y in all carried harmonics of a coordinate along a change of the motion, with all forces,
+    /// eliminated or not.
     pub fn change(&self, direction: &[f64], coordinate: usize, dw: &mut [f64]) {
         let set = self.condensed.set();
         let m = set.packed_len();
@@ -97,7 +98,7 @@ impl ContactForces<'_> {
         }
     }
 
-    /// Force of a coordinate behind a change of the motion and of ω, to first order.
+    /// Force of a coordinate after a change of the motion and of ω, to first order.
     pub fn behind(&self, (change, along): (&[f64], f64), coordinate: usize, force: &mut [f64]) {
         let m = force.len();
         let here = coordinate * m..(coordinate + 1) * m;
@@ -110,7 +111,8 @@ impl ContactForces<'_> {
         }
     }
 
-    /// The blocks ∂f/∂y of the force of a coordinate, each with the coordinate of its motion.
+    /// The blocks ∂f/∂y of the force of a coordinate, each with the coordinate of the motion by which it is the
+    /// derivative.
     pub fn blocks_of_force(&self, coordinate: usize) -> impl Iterator<Item = (usize, &[f64])> {
         self.jacobians.of_force(coordinate)
     }
@@ -133,7 +135,7 @@ impl ContactForces<'_> {
         self.jacobians.copy(values)
     }
 
-    /// Exchanges the Jacobians of all laws for those of another motion.
+    /// Exchanges the Jacobians of all laws for stored ones of another motion.
     pub fn swap_jacobians(&mut self, values: &mut Vec<f64>) {
         self.jacobians.swap(values);
     }
@@ -256,8 +258,8 @@ impl ContactForces<'_> {
         Ok(())
     }
 
-    /// Adds G (∂f/∂y − κ), on average over the phase of the motion, to a column of complex numbers: that of a motion in
-    /// harmonic i alone. `flexibility` holds the columns of G, one after each `stride` numbers.
+    /// Adds G (∂f/∂y − κ), averaged over the phase of the motion, to a column of complex numbers that belongs to a
+    /// motion in harmonic i alone. `flexibility` holds the columns of G at a distance of `stride` numbers.
     pub fn add_mean_coupling(
         &self,
         (motion, i): (usize, usize),
@@ -327,8 +329,8 @@ impl<K: Fn(usize) -> Complex64> WithSimd for Coupling<'_, K> {
     }
 }
 
-/// Adds G (J − κ) to columns of `n` rows: J from its column `first` on, and G for each row coordinate harmonic after harmonic,
-/// of which P carry a vibration; 0: any number.
+/// Adds G (J − κ) to columns of `n` rows, with the columns of J from `first` on, and with G for each row coordinate
+/// harmonic after harmonic. P is the number of vibrating harmonics, known at compile time; 0: any number.
 #[inline(always)]
 fn couple_columns<const P: usize, K: Fn(usize) -> Complex64>(by: Coupling<'_, K>) {
     let Coupling {

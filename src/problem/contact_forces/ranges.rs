@@ -77,7 +77,8 @@ impl ContactForces<'_> {
         Ok(onset)
     }
 
-    /// The factor of [`Self::set_scale`] from which on the forces of the given motion are (nearly) linear.
+    /// The scale factor s of [`Self::set_scale`] from which on the forces at the given motion are linear, or nearly
+    /// so.
     ///
     /// # Errors
     /// `OutOfMemory`.

@@ -4,16 +4,17 @@
 
 use crate::condense::by_factors::flexibility::Table;
 use crate::error::Result;
+use crate::linalg::libraries::{Simd, WithSimd};
 use crate::problem::contact_forces::ContactForces;
 use num_complex::Complex64;
-use pulp::{Simd, WithSimd};
 
 /// Numbers of the matrix that are written between two checks.
 /// Kind: block.
 const SINGLE_MATRIX_NUMBERS_TOGETHER: usize = 1 << 16;
 
 impl ContactForces<'_> {
-    /// Fills in the matrix, with memory for G of all harmonics; `false` where there are several motions or a mean.
+    /// Fills in Newton's matrix, with memory for G of all harmonics; `false` where there are several relative motions
+    /// or a mean.
     ///
     /// # Errors
     /// `StoppedByCaller`.
@@ -48,7 +49,7 @@ impl ContactForces<'_> {
     }
 }
 
-/// Columns from those of the harmonic `first` on.
+/// Columns of the matrix, beginning with those of the harmonic `first`.
 struct Fill<'a, K> {
     g: &'a [Complex64],
     first: usize,
@@ -79,7 +80,7 @@ impl<K: Fn(usize) -> Complex64> WithSimd for Fill<'_, K> {
 }
 
 impl<K: Fn(usize) -> Complex64> Fill<'_, K> {
-    /// For N numbers.
+    /// Writes the columns for N numbers, known at compile time.
     #[inline(always)]
     fn write<const N: usize>(self) {
         // With z′ the parts of z exchanged, g z = along·z + across·z′ number by number.
@@ -105,7 +106,7 @@ impl<K: Fn(usize) -> Complex64> Fill<'_, K> {
         }
     }
 
-    /// For any number of harmonics.
+    /// Writes the columns for any number of harmonics.
     #[inline(always)]
     fn write_any(self) {
         let m = 2 * self.g.len();
@@ -123,7 +124,8 @@ impl<K: Fn(usize) -> Complex64> Fill<'_, K> {
     }
 }
 
-/// Place of its harmonic in column q from that of the harmonic `first` on, and κ times its motion, 1 or i.
+/// Row of column q that holds the harmonic of this column, counted from that of harmonic `first`; and κ times the
+/// motion of the column, 1 or i.
 #[inline(always)]
 fn lost(first: usize, q: usize, kappa: impl Fn(usize) -> Complex64) -> (usize, Complex64) {
     let i = first + q / 2;

@@ -6,7 +6,7 @@ use crate::problem::epmc::{DAMPING_UNIT, EPMC_OMEGA_UNIT, Epmc};
 use num_complex::Complex64;
 
 impl Epmc<'_> {
-    /// L² B x̂₁ of the normalisation at the point last evaluated.
+    /// Product L² B x̂₁ of the normalisation at the point last evaluated.
     #[must_use]
     pub fn weighted(&self) -> &[Complex64] {
         &self.weighted
@@ -18,13 +18,13 @@ impl Epmc<'_> {
         self.condensed.length() / self.linear.shape[self.gauge.reference_dof].norm()
     }
 
-    /// Number of the unknown that represents the frequency, and the derivative of the frequency ω by it.
+    /// Index of the unknown that represents the frequency, and the derivative of the frequency ω by it.
     #[must_use]
     pub fn frequency_unknown(&self, omega: f64) -> (usize, f64) {
         (self.size() - 2, EPMC_OMEGA_UNIT * omega)
     }
 
-    /// Number of the unknown that represents the damping ratio, and the derivative of the ratio by it.
+    /// Index of the unknown that represents the damping ratio, and the derivative of the ratio by it.
     #[must_use]
     pub fn damping_unknown(&self) -> (usize, f64) {
         (self.size() - 1, DAMPING_UNIT)

@@ -24,21 +24,21 @@ const CONTEXT: &str = "the products of the nonlinear mode";
 /// Kind: fixed.
 const BEHIND: usize = 2;
 
-/// Memory of products, made by the first of them.
+/// Memory of products with Newton's matrix, allocated by the first product.
 #[derive(Default)]
 pub(super) struct ModeProducts {
-    /// Change of the contact forces less the reference, of all coordinates.
+    /// Change of the contact forces minus κ y, for all coordinates.
     change: Vec<f64>,
-    /// Numbers of one harmonic, their product, and memory for it.
+    /// Memory: numbers of one harmonic, their product, and work space for it.
     harmonic: [Vec<Complex64>; 3],
     column: Vec<f64>,
     /// The last two rows at the point evaluated last, without the columns of frequency and damping ratio.
     rows: [Vec<f64>; 2],
-    /// The matrix of an earlier point.
+    /// Data of the matrix at an earlier point, which is kept.
     kept: Kept,
 }
 
-/// The numbers that make up a matrix.
+/// Data from which the products of one matrix are computed.
 #[derive(Default)]
 struct Kept {
     jacobians: Vec<f64>,
@@ -187,7 +187,7 @@ impl Epmc<'_> {
         }
     }
 
-    /// Exchanges the current matrix for the one that was kept.
+    /// Exchanges the data of the current matrix for those of the kept one.
     fn exchange(&mut self) {
         let kept = &mut self.products.kept;
         self.forces.swap_jacobians(&mut kept.jacobians);
@@ -197,7 +197,7 @@ impl Epmc<'_> {
         swap(&mut self.products.rows, &mut kept.rows);
     }
 
-    /// out = J d
+    /// out ← J d with the current matrix.
     fn multiply_current(&mut self, d: &[f64], out: &mut [f64]) {
         let set = self.condensed.set();
         let (m, coordinates) = (set.packed_len(), self.condensed.coordinates());

@@ -30,7 +30,7 @@ use std::f64::consts::PI;
 
 pub use period::Account;
 
-/// Source of the force.
+/// Law or spring that makes the force of a contact.
 #[derive(Clone, Copy)]
 enum Maker<'a> {
     Law(&'a dyn Law),
@@ -38,13 +38,13 @@ enum Maker<'a> {
     Spring(f64),
 }
 
-/// A contact under a periodic motion; all quantities in the units of its law.
+/// A contact under a periodic motion, in the units of its law.
 #[derive(Clone, Copy)]
 pub struct Orbit<'a> {
     motion: PeriodicMotion<'a>,
     maker: Maker<'a>,
     samples: usize,
-    /// The packed motion of the contact, where the law has an exchanged one.
+    /// Packed motion of the contact itself, where the law has an exchanged motion; else `None`.
     actual: Option<&'a [f64]>,
 }
 
@@ -66,7 +66,7 @@ impl<'a> Orbit<'a> {
         }
     }
 
-    /// The same where the law has an exchanged motion, with the motion of the contact.
+    /// Adds the motion of the contact itself, where the law has an exchanged motion.
     pub fn moving(self, actual: &'a [f64]) -> Self {
         Self {
             actual: Some(actual),
@@ -89,13 +89,13 @@ impl<'a> Orbit<'a> {
         }
     }
 
-    /// Relative motions d.
+    /// Number d of relative motions of the contact.
     #[must_use]
     pub fn directions(&self) -> usize {
         self.motion.directions
     }
 
-    /// The contact at n times, a slice after the other.
+    /// Follows the contact over n times of the period, one slice after the other.
     ///
     /// # Errors
     /// `OutOfMemory`; those of callbacks; `NoConvergence` for a law whose states do not become periodic; `StoppedByCaller`.

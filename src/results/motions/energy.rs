@@ -22,7 +22,7 @@ use std::f64::consts::PI;
 /// Energies and losses of one sector that follow without a scan of the period.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Balance {
-    /// Σ_{h>0} ½ (hω)² X_hᴴ M_h X_h, twice the mean kinetic energy.
+    /// Sum Σ_{h>0} ½ (hω)² X_hᴴ M_h X_h, twice the mean kinetic energy.
     pub twice_mean_kinetic: f64,
     /// Mean strain energy of the linear structure, with springs and contacts that never slip, without the other
     /// contacts.
@@ -194,7 +194,8 @@ impl Series {
         })
     }
 
-    /// ½ Σ a(t) b(t) over n degrees of freedom: harmonics h of a and m of b contribute to h + m and h − m.
+    /// Sets the series to ½ Σ a(t) b(t) over n degrees of freedom: harmonics h of a and m of b contribute to h + m
+    /// and h − m.
     fn set_half_product(
         &mut self,
         numbers: &[usize],
@@ -219,7 +220,7 @@ impl Series {
         Ok(())
     }
 
-    /// Turns the series of one sector into that of all sectors.
+    /// Turns the series of one sector's energy into that of all sectors.
     fn add_sectors(&mut self, sectors: usize, in_step: usize) {
         for (n, c) in self.coefficients.iter_mut().enumerate() {
             *c = if n % in_step == 0 {

@@ -6,13 +6,12 @@ use crate::results::motions::energy::{balance, peaks};
 use crate::results::{Branch, Recovery};
 use num_complex::Complex64;
 
-/// Energies and losses of one point, in the caller's units. Potential energy is that of the linear
-/// structure with its springs and contacts that never slip; contacts that may slip are left out. In a nonlinear
-/// mode it counts from the static state.
-/// For a plain structure the values per sector are those of the whole.
+/// Energies and losses of one point, in the caller's units. The potential energy is stored in the linear structure
+/// with its springs and contacts that never slip; contacts that may slip are left out. In a nonlinear mode it counts
+/// from the static state. For a plain structure the values per sector are those of the whole structure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
-    /// Σ_{h>0} ½ (hω)² X_hᴴ M_h X_h of a sector, twice its mean kinetic energy.
+    /// Sum Σ_{h>0} ½ (hω)² X_hᴴ M_h X_h over a sector, twice its mean kinetic energy.
     pub twice_mean_kinetic: f64,
     /// Kinetic energy of a sector, mean over the period.
     pub kinetic_mean: f64,
@@ -55,7 +54,7 @@ impl Branch {
         }
     }
 
-    /// The same as [`Self::energy_at`], and the caller may stop it.
+    /// Energies and losses as [`Self::energy_at`], and the caller may stop it.
     ///
     /// # Errors
     /// As [`Self::energy_at`]; `StoppedByCaller`.
@@ -63,7 +62,7 @@ impl Branch {
         const CONTEXT: &str = "the energies";
         let carried = self.carried_of(point)?.len();
         let condensed = self.condensed_at(point);
-        let (n, length, omega) = (condensed.ndof(), condensed.length(), self.omega[point]);
+        let (n, length, omega) = (condensed.ndof(), condensed.length(), self.table.omega[point]);
         let mut x = try_vec(carried.saturating_mul(n), Complex64::ZERO, CONTEXT)?;
         let mut recovery = Recovery::at(self, point, interrupt)?;
         for (i, x) in x.chunks_exact_mut(n).enumerate() {

@@ -15,14 +15,14 @@ impl Branch {
         self.harmonics_at_with(point, x, &Interrupt::none())
     }
 
-    /// The same as [`Self::harmonics_at`], and the caller may stop it.
+    /// Harmonics as [`Self::harmonics_at`], and the caller may stop it.
     ///
     /// # Errors
     /// As [`Self::harmonics_at`]; `StoppedByCaller`.
     pub fn harmonics_at_with(&self, point: usize, x: &mut [Complex64], interrupt: &Interrupt<'_>) -> Result<()> {
         self.carried_of(point)?;
         let n = self.ndof();
-        let needed = (self.harmonics + 1) * n;
+        let needed = (self.run.harmonics + 1) * n;
         if x.len() != needed {
             return fail!(
                 Dimension,
@@ -30,7 +30,7 @@ impl Branch {
                 x.len()
             );
         }
-        let found = Recovery::at(self, point, interrupt)?.all(self.harmonics)?;
+        let found = Recovery::at(self, point, interrupt)?.all(self.run.harmonics)?;
         x.copy_from_slice(&found);
         Ok(())
     }

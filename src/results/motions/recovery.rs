@@ -9,7 +9,8 @@ use crate::problem::contact_forces::ContactForces;
 use crate::results::stored::branch::Branch;
 use num_complex::Complex64;
 
-/// A solution: packed relative motions in the solver's units, angular frequency, and the ratio of artificial damping.
+/// A solution: packed relative motions in the solver's units, angular frequency, and damping ratio of the artificial
+/// damping.
 type Solution<'a> = (&'a [f64], f64, f64);
 
 impl Branch {
@@ -42,18 +43,18 @@ pub(crate) struct Recovery<'a> {
 const CONTEXT: &str = "the harmonics";
 
 impl<'a> Recovery<'a> {
-    /// Memory for the points of a branch, with a stored point selected; see [`Self::go_to`].
+    /// A recovery for the points of a branch, with a stored point selected; see [`Self::go_to`].
     ///
     /// # Errors
     /// `Index` for an unknown point, `OutOfMemory`; those of callbacks; `StoppedByCaller`.
     pub fn at(branch: &'a Branch, point: usize, interrupt: &'a Interrupt<'a>) -> Result<Self> {
         interrupt.check()?;
         branch.carried_of(point)?;
-        let resolution = &branch.resolutions[branch.places[point].resolution];
+        let resolution = &branch.resolutions[branch.table.places[point].resolution];
         Self::of(resolution, Self::stored(branch, point), interrupt)
     }
 
-    /// Memory for the points of one resolution, with a solution selected that need not be stored.
+    /// A recovery for the points of one resolution, with a solution selected that need not be stored.
     ///
     /// # Errors
     /// `OutOfMemory`; those of callbacks; `StoppedByCaller`.
@@ -75,7 +76,7 @@ impl<'a> Recovery<'a> {
 
     fn stored(branch: &'a Branch, point: usize) -> Solution<'a> {
         let motion = branch.motion_at(point).unwrap_or(&[]);
-        (motion, branch.omega[point], branch.damping_at(point))
+        (motion, branch.table.omega[point], branch.damping_at(point))
     }
 
     /// Selects a stored point and evaluates its contact forces.
@@ -83,7 +84,7 @@ impl<'a> Recovery<'a> {
     /// # Errors
     /// `OutOfMemory`; those of callbacks; `StoppedByCaller`.
     pub fn go_to(&mut self, branch: &'a Branch, point: usize) -> Result<()> {
-        let resolution = &branch.resolutions[branch.places[point].resolution];
+        let resolution = &branch.resolutions[branch.table.places[point].resolution];
         if !core::ptr::eq(self.resolution, resolution) {
             *self = Self::at(branch, point, self.interrupt)?;
             return Ok(());
@@ -146,7 +147,8 @@ impl<'a> Recovery<'a> {
         Ok(())
     }
 
-    /// The same for the coordinates of the harmonic: the independent degrees of freedom, or those of its basis.
+    /// Motion of the coordinates in the i-th carried harmonic: independent degrees of freedom, or columns of the
+    /// basis.
     ///
     /// # Errors
     /// As [`Self::harmonic`].

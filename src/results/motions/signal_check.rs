@@ -9,7 +9,7 @@ use crate::interrupt::Interrupt;
 const SIGNAL_CHECK_BETWEEN_CHECKS: usize = 256;
 const OF_ONE_JET: usize = 10;
 
-/// Checks a stop now and then, before the j-th value of a signal.
+/// Checks for a stop now and then, before the j-th value of a signal.
 pub(crate) fn check_time(interrupt: &Interrupt<'_>, j: usize, set: &HarmonicSet) -> Result<()> {
     if j.is_multiple_of(SIGNAL_CHECK_BETWEEN_CHECKS) {
         interrupt.check_before((SIGNAL_CHECK_BETWEEN_CHECKS * OF_ONE_JET * (set.numbers().len() + 1)) as u64)?;

@@ -19,17 +19,17 @@ pub const MOST_TIMES: usize = 1 << 24;
 
 const LOOP: &str = "the loop of a contact";
 
-/// A contact over one period at ωt = 2πj/n, j = 0 .. n, in the caller's units.
+/// Motion, force and state of a contact over one period at ωt = 2πj/n, j = 0 .. n, in the caller's units.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactLoop {
-    /// Relative motions d of the contact.
+    /// Number d of relative motions of the contact.
     pub directions: usize,
     /// Relative motions, side a minus side b, n × d, time after time.
     pub motion: Vec<f64>,
-    /// Forces f, n × d, which act on the rows of side a as +f and on those of side b as −f. They are the whole
-    /// forces of the law, not their carried harmonics; along a normal f = −N.
+    /// Contact forces f, n × d. They act on the rows of side a as +f and on the rows of side b as −f. They are the
+    /// whole forces of the law, not only their carried harmonics; along a normal f = −N.
     pub force: Vec<f64>,
-    /// State of the contact, n. A contact that is linear at any motion or without force is reported as stuck, and
+    /// States of the contact, n values. A contact without force, or linear at any motion, is reported as stuck, and
     /// so are laws without states.
     pub state: Vec<State>,
 }
@@ -41,7 +41,7 @@ pub const SUMMARISED: usize = 3;
 /// Numbers of one contact over one period, in the caller's units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactSummary {
-    /// Relative motions d of the contact.
+    /// Number d of relative motions of the contact.
     pub directions: usize,
     /// Work per cycle that the contact dissipates in all its directions; exactly 0 for friction that does not slip
     /// and for laws of one motion that do not depend on velocity.
@@ -54,12 +54,12 @@ pub struct ContactSummary {
     pub half_range: [f64; SUMMARISED],
     /// Smallest relative motions, side a minus side b.
     pub motion_min: [f64; SUMMARISED],
-    /// Largest relative motions.
+    /// Largest relative motions, side a minus side b.
     pub motion_max: [f64; SUMMARISED],
-    /// Smallest normal load. Friction under a constant load has the given one; springs that cannot open, and laws
-    /// of the caller, have none: 0.
+    /// Smallest normal load. Friction under a constant load has the given load; springs that cannot open, and laws of
+    /// the caller, have none: 0.
     pub load_min: f64,
-    /// Largest normal load.
+    /// Largest normal load, as for the smallest.
     pub load_max: f64,
 }
 
@@ -74,7 +74,7 @@ impl Branch {
         self.time_history_with(point, dof, n, &Interrupt::none())
     }
 
-    /// The same as [`Self::time_history`], and the caller may stop it.
+    /// Motion over time as [`Self::time_history`], and the caller may stop it.
     ///
     /// # Errors
     /// As [`Self::time_history`]; `StoppedByCaller`.
@@ -112,7 +112,7 @@ impl Branch {
         self.contact_loop_with(point, contact, n, &Interrupt::none())
     }
 
-    /// The same as [`Self::contact_loop`], and the caller may stop it.
+    /// Loop of a contact as [`Self::contact_loop`], and the caller may stop it.
     ///
     /// # Errors
     /// As [`Self::contact_loop`]; `StoppedByCaller`.
@@ -142,8 +142,8 @@ impl Branch {
         })
     }
 
-    /// One direction of [`Self::contact_loop`], of which it holds no more than is `wanted`: motions, forces, states. The rest is
-    /// empty.
+    /// One direction of [`Self::contact_loop`]. `wanted` selects motions, forces and states; what is not selected
+    /// stays empty.
     ///
     /// # Errors
     /// As [`Self::contact_loop`], with `Index` for an unknown direction; `StoppedByCaller`.
@@ -200,7 +200,7 @@ impl Branch {
         self.contact_summary_with(point, contact, &Interrupt::none())
     }
 
-    /// The same as [`Self::contact_summary`], and the caller may stop it.
+    /// Summary of a contact as [`Self::contact_summary`], and the caller may stop it.
     ///
     /// # Errors
     /// As [`Self::contact_summary`]; `StoppedByCaller`.
@@ -235,14 +235,14 @@ impl Branch {
         })
     }
 
-    /// A contact under the load at the frequency of a point; `None` where its load does not depend on that.
+    /// A contact under its load at the frequency of a point; `None` where the load does not depend on the frequency.
     fn contact_at_speed(&self, point: usize, contact: usize) -> Option<Contact> {
         let laws = self.condensed_at(point).laws();
         let found = laws
             .binary_search_by_key(&contact, |assembled| assembled.contact)
             .ok()?;
         let load = laws[found].load.as_ref()?;
-        Some(load.contact_at(self.omega[point]))
+        Some(load.contact_at(self.table.omega[point]))
     }
 
     /// Number of relative motions of a contact in [`Self::contact_loop`].
@@ -297,7 +297,7 @@ impl Branch {
             let all = self.motion_at(point).unwrap_or(&[]);
             try_extend(&mut motion, &all[c * m..(c + 1) * m], "the motion of a contact")?;
         }
-        let omega = self.omega[point];
+        let omega = self.table.omega[point];
         let law = match &assembled.load {
             None => Arc::clone(&assembled.law),
             Some(load) => load.contact_at(omega).law(condensed.length())?,

@@ -4,13 +4,13 @@
 use crate::condense::Resolution;
 use crate::condense::{Condensed, Reduction};
 use crate::error::{Error, Result, Status, fail};
+use crate::results::stored::branch_parts::{PointErrors, PointStability, PointTable, Run, SpecialLists};
 use crate::results::stored::descent::{Descent, Searched};
 use crate::results::stored::freedom_of_points::FreedomOfPoints;
 use crate::results::stored::mode_branch::ModeData;
 use crate::results::stored::origin::Origin;
 use crate::results::stored::parameter_branch::ParameterData;
 use crate::results::stored::special::Special;
-use crate::results::verdicts::verdict::Located;
 use crate::results::watched::response_series::ResponseSeries;
 use num_complex::Complex64;
 
@@ -20,70 +20,45 @@ use num_complex::Complex64;
 /// requested solutions have the numbers after that.
 #[derive(Debug)]
 pub struct Branch {
+    pub(crate) run: Run,
+    /// The resolutions that points have.
     pub(crate) resolutions: Vec<Resolution>,
-    /// Place of each stored point.
-    pub(crate) places: Vec<Place>,
-    pub(crate) reduction: Reduction,
-    pub(crate) harmonics: usize,
-    pub(crate) estimates: usize,
-    pub(crate) response_dof: usize,
-    pub(crate) status: Status,
-    pub(crate) reason: Option<Error>,
+    /// Number of points on the curve.
     pub(crate) curve: usize,
-    pub(crate) omega: Vec<f64>,
-    pub(crate) amplitude: Vec<f64>,
-    pub(crate) residual: Vec<f64>,
-    pub(crate) iterations: Vec<f64>,
-    pub(crate) harmonics_used: Vec<f64>,
-    pub(crate) slip_fraction: Vec<f64>,
-    pub(crate) sampling_error: Vec<f64>,
-    pub(crate) error_estimate: Vec<f64>,
-    pub(crate) damping_error_estimate: Vec<f64>,
-    pub(crate) motion: Vec<f64>,
-    pub(crate) response: Vec<Complex64>,
-    /// The responses that were asked for.
+    pub(crate) table: PointTable,
+    pub(crate) errors: PointErrors,
+    pub(crate) stability: PointStability,
+    pub(crate) special: SpecialLists,
+    /// The requested responses at the stored points.
     pub(crate) responses: Vec<ResponseSeries>,
-    pub(crate) together: bool,
-    pub(crate) peaks: Vec<Special>,
-    pub(crate) folds: Vec<Special>,
-    /// Limit cycles, each with the slope of the damping ratio.
-    pub(crate) limit_cycles: Vec<(Special, f64)>,
-    /// Folds included.
-    pub(crate) bifurcations: Vec<Located>,
-    pub(crate) tells_stability: bool,
-    pub(crate) floquet_radius: Vec<f64>,
-    pub(crate) unstable_directions: Vec<f64>,
-    /// With the solver option `freedom`.
+    /// Free sliders of the stored points, with the solver option `freedom`; else `None`.
     pub(crate) freedom: Option<Box<FreedomOfPoints>>,
-    pub(crate) at: Vec<Vec<Special>>,
     pub(crate) mode: Option<ModeData>,
     pub(crate) parameter: Option<ParameterData>,
-    pub(crate) origin: Option<Origin>,
-    pub(crate) children: Vec<Self>,
-    pub(crate) descent: Option<Descent>,
-    pub(crate) searched: Option<Searched>,
+    pub(crate) family: Family,
 }
 
-/// Place of a stored point: the number of its resolution, and the offsets of its motion and of its response.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
-    pub(crate) resolution: usize,
-    pub(crate) motion: usize,
-    pub(crate) response: usize,
+/// Place of a branch among the branches that were found with it.
+#[derive(Debug, Default)]
+pub(crate) struct Family {
+    pub(crate) origin: Option<Origin>,
+    pub(crate) children: Vec<Branch>,
+    pub(crate) descent: Option<Descent>,
+    pub(crate) searched: Option<Searched>,
 }
 
 impl Branch {
     /// [`Status::Ok`] when the whole range was covered, else the reason why the branch ended early.
     #[must_use]
     pub fn status(&self) -> Status {
-        self.status
+        self.run.status
     }
 
     /// The error that ended the branch early, where the status alone does not identify it: the failure of a
     /// callback, or a frequency without bounded solution.
     #[must_use]
     pub fn reason(&self) -> Option<&Error> {
-        self.reason.as_ref()
+        self.run.reason.as_ref()
     }
 
     /// Number of points on the curve.
@@ -95,49 +70,50 @@ impl Branch {
     /// Number of stored points, the special ones included.
     #[must_use]
     pub fn stored(&self) -> usize {
-        self.omega.len()
+        self.table.omega.len()
     }
 
     /// Angular frequency of each point on the curve.
     #[must_use]
     pub fn omega(&self) -> &[f64] {
-        &self.omega[..self.curve]
+        &self.table.omega[..self.curve]
     }
 
     /// Angular frequency of one stored point, the special ones included.
     #[must_use]
     pub fn omega_at(&self, point: usize) -> Option<f64> {
-        self.omega.get(point).copied()
+        self.table.omega.get(point).copied()
     }
 
-    /// Amplitude |X| of the response degree of freedom (fundamental, peak) at each point, or the measure of the first response that
-    /// was asked for.
+    /// Amplitude |X| of the response degree of freedom (fundamental, peak) at each point, or the measure of the first
+    /// requested response.
     #[must_use]
     pub fn amplitude(&self) -> &[f64] {
-        &self.amplitude[..self.curve]
+        &self.table.amplitude[..self.curve]
     }
 
-    /// The same at a stored point; NaN where there is none.
+    /// Amplitude of a stored point; NaN where there is no such point.
     pub(crate) fn stored_amplitude(&self, point: usize) -> f64 {
-        self.amplitude.get(point).copied().unwrap_or(f64::NAN)
+        self.table.amplitude.get(point).copied().unwrap_or(f64::NAN)
     }
 
-    /// Relative residual of each point, before a last Newton correction; a bound of that behind it where it is foreseen.
+    /// Relative residual of each point, before a last Newton correction; or a bound of the residual after that
+    /// correction, where it was foreseen.
     #[must_use]
     pub fn residual(&self) -> &[f64] {
-        &self.residual[..self.curve]
+        &self.table.residual[..self.curve]
     }
 
-    /// Newton iterations of each point.
+    /// Number of Newton iterations of each point.
     #[must_use]
     pub fn newton_iterations(&self) -> &[f64] {
-        &self.iterations[..self.curve]
+        &self.table.iterations[..self.curve]
     }
 
     /// Highest harmonic number carried at each point.
     #[must_use]
     pub fn harmonics_used(&self) -> &[f64] {
-        &self.harmonics_used[..self.curve]
+        &self.table.harmonics_used[..self.curve]
     }
 
     /// Share of the period that each contact slips: points × contacts, point after point. Time in the open state
@@ -145,32 +121,32 @@ impl Branch {
     /// ones, for laws without states and for contacts without force.
     #[must_use]
     pub fn slip_fraction(&self) -> &[f64] {
-        &self.slip_fraction[..self.curve * self.contacts()]
+        &self.table.slip_fraction[..self.curve * self.contacts()]
     }
 
     /// Slip shares of one stored point, the special ones included.
     #[must_use]
     pub fn slip_fraction_at(&self, point: usize) -> Option<&[f64]> {
         let contacts = self.contacts();
-        (point < self.stored()).then(|| &self.slip_fraction[point * contacts..(point + 1) * contacts])
+        (point < self.stored()).then(|| &self.table.slip_fraction[point * contacts..(point + 1) * contacts])
     }
 
     /// Maxima of the amplitude, in a nonlinear mode of the damping ratio, refined on the solution.
     #[must_use]
     pub fn peaks(&self) -> &[Special] {
-        &self.peaks
+        &self.special.peaks
     }
 
     /// Turning points in frequency, in a nonlinear mode in amplitude, refined on the solution.
     #[must_use]
     pub fn folds(&self) -> &[Special] {
-        &self.folds
+        &self.special.folds
     }
 
     /// Every solution found at the i-th requested frequency (in a nonlinear mode: amplitude).
     #[must_use]
     pub fn at(&self, i: usize) -> &[Special] {
-        self.at.get(i).map_or(&[], Vec::as_slice)
+        self.special.at.get(i).map_or(&[], Vec::as_slice)
     }
 
     /// Number of contacts in the model.
@@ -179,7 +155,7 @@ impl Branch {
         self.resolutions[0].condensed.contacts()
     }
 
-    /// Degrees of freedom (of one sector).
+    /// Number of degrees of freedom (of one sector).
     #[must_use]
     pub fn ndof(&self) -> usize {
         self.resolutions[0].condensed.degrees().given()
@@ -189,10 +165,10 @@ impl Branch {
     /// stored point carries.
     #[must_use]
     pub fn harmonics(&self) -> usize {
-        self.harmonics
+        self.run.harmonics
     }
 
-    /// Harmonic numbers that are carried at a stored point; all others are zero.
+    /// Carried harmonics of a stored point, by their numbers; all other harmonics are zero.
     #[must_use]
     pub fn carried_at(&self, point: usize) -> Option<&[usize]> {
         Some(self.resolution_at(point)?.condensed.set().numbers())
@@ -201,22 +177,22 @@ impl Branch {
     /// The response degree of freedom, which defines the amplitude.
     #[must_use]
     pub fn response_dof(&self) -> usize {
-        self.response_dof
+        self.run.response_dof
     }
 
     /// The parts of the problem that the condensation removed.
     #[must_use]
     pub fn reduction(&self) -> &Reduction {
-        &self.reduction
+        &self.run.reduction
     }
 
     /// Harmonics of the response degree of freedom at a stored point, one per number in [`Self::carried_at`]. They
     /// are stored, so that the whole structure need not be recovered.
     #[must_use]
     pub fn response_at(&self, point: usize) -> Option<&[Complex64]> {
-        let place = self.places.get(point)?;
+        let place = self.table.places.get(point)?;
         let carried = self.carried_at(point)?.len();
-        self.response.get(place.response..place.response + carried)
+        self.table.response.get(place.response..place.response + carried)
     }
 
     /// The carried harmonics of a stored point, which must exist.
@@ -231,19 +207,19 @@ impl Branch {
         }
     }
 
-    /// Number of the resolution of a stored point; that of the first where there is no such point.
+    /// Index of the resolution of a stored point; that of the first one where there is no such point.
     pub(crate) fn resolution_index(&self, point: usize) -> usize {
-        self.places.get(point).map_or(0, |p| p.resolution)
+        self.table.places.get(point).map_or(0, |p| p.resolution)
     }
 
-    /// The resolution of a number.
+    /// The resolution with an index.
     pub(crate) fn numbered_resolution(&self, index: usize) -> &Resolution {
         &self.resolutions[index]
     }
 
     /// The resolution of a stored point.
     fn resolution_at(&self, point: usize) -> Option<&Resolution> {
-        Some(&self.resolutions[self.places.get(point)?.resolution])
+        Some(&self.resolutions[self.table.places.get(point)?.resolution])
     }
 
     /// The condensed model of a stored point; the first one where there is no such point.
@@ -260,7 +236,7 @@ impl Branch {
     pub(crate) fn motion_at(&self, point: usize) -> Option<&[f64]> {
         let condensed = &self.resolution_at(point)?.condensed;
         let size = condensed.coordinates() * condensed.set().packed_len();
-        let begin = self.places[point].motion;
-        self.motion.get(begin..begin + size)
+        let begin = self.table.places[point].motion;
+        self.table.motion.get(begin..begin + size)
     }
 }

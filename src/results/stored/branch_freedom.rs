@@ -5,14 +5,14 @@ use crate::results::Branch;
 use crate::results::stored::freedom_of_points::FreedomOfPoints;
 
 impl Branch {
-    /// Whether freedom was requested.
+    /// Whether the free sliders of the points were requested.
     #[must_use]
     pub fn tells_freedom(&self) -> bool {
         self.freedom.is_some()
     }
 
-    /// Number of free sliders at each point of the curve, as [`crate::freedom()`] lists them; NaN where it is unknown, and none without
-    /// the solver option `freedom`.
+    /// Number of free sliders at each point of the curve, as [`crate::freedom()`] lists them; NaN where it is
+    /// unknown. Empty without the solver option `freedom`.
     #[must_use]
     pub fn free_sliders(&self) -> &[f64] {
         let all = self.freedom.as_ref().map_or(&[][..], |freedom| freedom.count());
@@ -29,8 +29,8 @@ impl Branch {
     /// Stores the freedom of all points; `stopped` if the caller stopped its computation.
     pub(crate) fn set_freedom(&mut self, freedom: Box<FreedomOfPoints>, stopped: bool) {
         self.freedom = Some(freedom);
-        if stopped && self.status == Status::Ok {
-            self.status = Status::StoppedByCaller;
+        if stopped && self.run.status == Status::Ok {
+            self.run.status = Status::StoppedByCaller;
         }
     }
 }

@@ -4,7 +4,8 @@ use crate::condense::{Condensed, Reduction, Resolution};
 use crate::error::{Error, Result, Status, try_push};
 use crate::model::Model;
 use crate::options::SolverOptions;
-use crate::results::stored::branch::{Branch, Place};
+use crate::results::stored::branch::{Branch, Family};
+use crate::results::stored::branch_parts::{Place, PointErrors, PointStability, PointTable, Run, SpecialLists};
 use crate::results::stored::mode_branch::ModeData;
 use crate::results::stored::special::Special;
 use crate::results::verdicts::verdict::{Bifurcation, BifurcationKind, Located};
@@ -16,12 +17,12 @@ use std::sync::Arc;
 /// Kind: tuned; measured on: not recorded.
 const FIRST_ROOM: (usize, usize) = (32, 4096);
 
-/// Numbers of one point.
+/// Data of one point to be stored.
 #[derive(Clone, Copy, Debug)]
 pub struct Record<'a> {
     /// Resolution with which the point was solved.
     pub resolution: &'a Resolution,
-    /// Angular frequency.
+    /// Angular frequency of the point.
     pub omega: f64,
     /// Packed relative motions, in the solver's units.
     pub motion: &'a [f64],
@@ -29,9 +30,9 @@ pub struct Record<'a> {
     pub amplitude: Complex64,
     /// Carried harmonics of the response degree of freedom, in the solver's units.
     pub response: &'a [Complex64],
-    /// Relative residual.
+    /// Relative residual of the point.
     pub residual: f64,
-    /// Newton iterations.
+    /// Number of Newton iterations of the point.
     pub iterations: usize,
     /// Share of the period that each law slips.
     pub slip_fractions: &'a [f64],
@@ -40,23 +41,23 @@ pub struct Record<'a> {
     /// Estimated relative error of the response amplitude, or of the frequency of a mode, and the error of its
     /// damping ratio; NaN if unknown.
     pub errors: (f64, f64),
-    /// The responses of the run, in the solver's units, with their errors; empty without any.
+    /// Values of the requested responses, in the solver's units, with their errors; empty without such.
     pub seen: &'a [SeenWithError],
 }
 
-/// List to which a special point belongs.
+/// List in which a special point is stored.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum SpecialKind {
     Peak,
-    /// A peak of a further response.
+    /// A peak of the further response with this index.
     PeakOf(usize),
-    /// One side of a kink of a response; the other one follows or comes before.
+    /// One side of a kink of the response with this index; the other side follows or comes before.
     KinkOf(usize),
     Fold,
     At(usize),
-    /// Any but a fold, with the numbers of unstable directions before and after it.
+    /// A bifurcation other than a fold, with the numbers of unstable directions before and after it.
     Bifurcation(BifurcationKind, [Option<usize>; 2]),
-    /// With the derivative of the damping ratio by log₁₀ of the amplitude.
+    /// A limit cycle, with the derivative of the damping ratio by log₁₀ of the amplitude.
     LimitCycle {
         slope: f64,
     },
@@ -67,7 +68,7 @@ impl SpecialKind {
         matches!(self, Self::Fold | Self::Bifurcation(BifurcationKind::Fold, _))
     }
 
-    /// The response whose peak or kink it is.
+    /// Index of the response whose peak or kink this is; `None` for other points.
     pub fn response(self) -> Option<usize> {
         match self {
             Self::PeakOf(response) | Self::KinkOf(response) => Some(response),
@@ -87,43 +88,27 @@ impl Branch {
         let mut resolutions = Vec::new();
         try_push(&mut resolutions, resolution.clone(), "the branch")?;
         Ok(Self {
+            run: Run {
+                reduction,
+                harmonics,
+                estimates: 0,
+                response_dof,
+                status: Status::Ok,
+                reason: None,
+                together: false,
+                tells_stability: false,
+            },
             resolutions,
-            places: Vec::new(),
-            reduction,
-            harmonics,
-            estimates: 0,
-            response_dof,
-            status: Status::Ok,
-            reason: None,
             curve: 0,
-            omega: Vec::new(),
-            amplitude: Vec::new(),
-            residual: Vec::new(),
-            iterations: Vec::new(),
-            harmonics_used: Vec::new(),
-            slip_fraction: Vec::new(),
-            sampling_error: Vec::new(),
-            error_estimate: Vec::new(),
-            damping_error_estimate: Vec::new(),
-            motion: Vec::new(),
-            response: Vec::new(),
+            table: PointTable::default(),
+            errors: PointErrors::default(),
+            stability: PointStability::default(),
+            special: SpecialLists::default(),
             responses: Vec::new(),
-            together: false,
-            peaks: Vec::new(),
-            folds: Vec::new(),
-            limit_cycles: Vec::new(),
-            bifurcations: Vec::new(),
-            tells_stability: false,
-            floquet_radius: Vec::new(),
-            unstable_directions: Vec::new(),
             freedom: None,
-            at: Vec::new(),
             mode: None,
             parameter: None,
-            origin: None,
-            children: Vec::new(),
-            descent: None,
-            searched: None,
+            family: Family::default(),
         })
     }
 
@@ -143,8 +128,8 @@ impl Branch {
         };
         let harmonics = if options.tolerance > 0.0 { 0 } else { options.harmonics };
         let mut branch = Self::new(&resolution, reduction, harmonics, options.response_dof.unwrap_or(0))?;
-        branch.status = Status::StoppedByCaller;
-        branch.tells_stability = options.stability.is_some();
+        branch.run.status = Status::StoppedByCaller;
+        branch.run.tells_stability = options.stability.is_some();
         Ok(branch)
     }
 
@@ -152,7 +137,7 @@ impl Branch {
         self.mode = Some(data);
     }
 
-    /// Stores a point and returns its number.
+    /// Stores a point and returns its index.
     ///
     /// # Errors
     /// `OutOfMemory`; the branch then ends before this point.
@@ -163,38 +148,42 @@ impl Branch {
         let resolution = self.resolution_of(record.resolution)?;
         let place = Place {
             resolution,
-            motion: self.motion.len(),
-            response: self.response.len(),
+            motion: self.table.motion.len(),
+            response: self.table.response.len(),
         };
-        let points = if self.places.is_empty() {
+        let points = if self.table.places.is_empty() {
             (FIRST_ROOM.1 / record.motion.len().max(1)).clamp(1, FIRST_ROOM.0)
         } else {
             1
         };
-        self.places
+        self.table
+            .places
             .try_reserve(points)
             .map_err(|_| Error::out_of_memory(CONTEXT))?;
-        self.slip_fraction
+        self.table
+            .slip_fraction
             .try_reserve(points * contacts)
             .map_err(|_| Error::out_of_memory(CONTEXT))?;
         for v in [
-            &mut self.amplitude,
-            &mut self.residual,
-            &mut self.iterations,
-            &mut self.harmonics_used,
-            &mut self.sampling_error,
-            &mut self.error_estimate,
-            &mut self.damping_error_estimate,
+            &mut self.table.amplitude,
+            &mut self.table.residual,
+            &mut self.table.iterations,
+            &mut self.table.harmonics_used,
+            &mut self.errors.sampling,
+            &mut self.errors.truncation,
+            &mut self.errors.damping,
         ] {
             v.try_reserve(points).map_err(|_| Error::out_of_memory(CONTEXT))?;
         }
-        self.response
+        self.table
+            .response
             .try_reserve(points * record.response.len())
             .map_err(|_| Error::out_of_memory(CONTEXT))?;
-        self.motion
+        self.table
+            .motion
             .try_reserve(points * record.motion.len())
             .map_err(|_| Error::out_of_memory(CONTEXT))?;
-        self.motion.extend_from_slice(record.motion);
+        self.table.motion.extend_from_slice(record.motion);
         let length = record.resolution.condensed.length();
         for (response, seen) in self.responses.iter_mut().zip(record.seen) {
             let mut seen = *seen;
@@ -204,36 +193,36 @@ impl Branch {
             response.push(&seen, length)?;
         }
         // The frequency is stored last: its length is the number of points.
-        try_push(&mut self.omega, record.omega, CONTEXT)?;
-        self.places.push(place);
+        try_push(&mut self.table.omega, record.omega, CONTEXT)?;
+        self.table.places.push(place);
         let condensed = &*record.resolution.condensed;
         let leading = self.responses.first().zip(record.seen.first());
         let amplitude = match leading.filter(|(response, _)| !response.is_observed()) {
             Some((_, seen)) => seen.seen.reading.value,
             None => record.amplitude.norm(),
         };
-        self.amplitude.push(amplitude * length);
-        self.response.extend(record.response.iter().map(|x| x * length));
-        self.residual.push(record.residual);
-        self.sampling_error.push(record.sampling_error);
-        self.error_estimate.push(record.errors.0);
-        self.damping_error_estimate.push(record.errors.1);
-        self.iterations.push(record.iterations as f64);
+        self.table.amplitude.push(amplitude * length);
+        self.table.response.extend(record.response.iter().map(|x| x * length));
+        self.table.residual.push(record.residual);
+        self.errors.sampling.push(record.sampling_error);
+        self.errors.truncation.push(record.errors.0);
+        self.errors.damping.push(record.errors.1);
+        self.table.iterations.push(record.iterations as f64);
         let highest = condensed.set().numbers().last().copied().unwrap_or(0);
-        self.harmonics = self.harmonics.max(highest);
-        self.harmonics_used.push(highest as f64);
-        let at = self.slip_fraction.len();
-        self.slip_fraction.resize(at + contacts, 0.0);
+        self.run.harmonics = self.run.harmonics.max(highest);
+        self.table.harmonics_used.push(highest as f64);
+        let at = self.table.slip_fraction.len();
+        self.table.slip_fraction.resize(at + contacts, 0.0);
         for (assembled, &share) in condensed.laws().iter().zip(record.slip_fractions) {
-            self.slip_fraction[at + assembled.contact] = share;
+            self.table.slip_fraction[at + assembled.contact] = share;
         }
-        Ok(self.omega.len() - 1)
+        Ok(self.table.omega.len() - 1)
     }
 
     /// Appends a point to the curve, which must be done before any special point is stored.
     pub(crate) fn push_curve(&mut self, record: &Record<'_>) -> Result<()> {
         self.push(record)?;
-        self.curve = self.omega.len();
+        self.curve = self.table.omega.len();
         Ok(())
     }
 
@@ -252,14 +241,14 @@ impl Branch {
         let special = Special {
             point,
             omega: record.omega,
-            amplitude: self.amplitude[point],
+            amplitude: self.table.amplitude[point],
         };
         let list = match kind {
             SpecialKind::Peak => {
                 if let Some(response) = self.responses.first_mut() {
                     response.push_peak(special)?;
                 }
-                &mut self.peaks
+                &mut self.special.peaks
             }
             SpecialKind::PeakOf(response) => {
                 let Some(of) = self.responses.get_mut(response) else {
@@ -273,7 +262,7 @@ impl Branch {
                 if response > 0 {
                     return Ok(());
                 }
-                &mut self.peaks
+                &mut self.special.peaks
             }
             SpecialKind::KinkOf(response) => {
                 let Some(of) = self.responses.get_mut(response) else {
@@ -284,19 +273,19 @@ impl Branch {
             }
             SpecialKind::Fold => {
                 self.push_bifurcation((BifurcationKind::Fold, [None; 2]), after, special)?;
-                &mut self.folds
+                &mut self.special.folds
             }
             SpecialKind::Bifurcation(kind, unstable) => {
                 return self.push_bifurcation((kind, unstable), after, special);
             }
             SpecialKind::LimitCycle { slope } => {
-                return try_push(&mut self.limit_cycles, (special, slope), "the limit cycles");
+                return try_push(&mut self.special.limit_cycles, (special, slope), "the limit cycles");
             }
             SpecialKind::At(i) => {
-                while self.at.len() <= i {
-                    try_push(&mut self.at, Vec::new(), "the requested solutions")?;
+                while self.special.at.len() <= i {
+                    try_push(&mut self.special.at, Vec::new(), "the requested solutions")?;
                 }
-                &mut self.at[i]
+                &mut self.special.at[i]
             }
         };
         try_push(list, special, "the special points")
@@ -316,28 +305,28 @@ impl Branch {
             unstable,
         };
         try_push(
-            &mut self.bifurcations,
+            &mut self.special.bifurcations,
             Located { bifurcation, after },
             "the bifurcations",
         )
     }
 
-    /// Tells the parts that were removed from the problem with the most harmonics.
+    /// Completes the reduction by the parts that were removed from the problem with the most harmonics.
     pub(crate) fn complete_reduction(&mut self, model: &Model, options: &SolverOptions) {
         let largest = self
             .resolutions
             .iter()
             .max_by_key(|resolution| resolution.condensed.unknowns());
         if let Some(largest) = largest {
-            let held = self.reduction.held_by_contacts;
+            let held = self.run.reduction.held_by_contacts;
             let reduction = largest.condensed.reduction_with(model, options, held);
             self.set_reduction(reduction);
         }
     }
 
     pub(crate) fn set_reduction(&mut self, reduction: Reduction) {
-        self.reduction = Reduction {
-            harmonics_asked: self.harmonics,
+        self.run.reduction = Reduction {
+            harmonics_asked: self.run.harmonics,
             ..reduction
         };
     }
@@ -345,15 +334,15 @@ impl Branch {
     /// Sets the status of the branch. `stalled`: round-off stopped some point above the tolerance of the residual;
     /// `missed`: the error of some point exceeds the tolerance that chooses the harmonics.
     pub(crate) fn set_ending(&mut self, status: Status, reason: Option<Error>, (stalled, missed): (bool, bool)) {
-        self.status = match status {
+        self.run.status = match status {
             Status::Ok if missed => Status::StoppedMaxHarmonics,
             Status::Ok if stalled => Status::StoppedStalled,
             status => status,
         };
-        self.reason = reason;
+        self.run.reason = reason;
     }
 
-    /// Number of a resolution, which is stored if it is new.
+    /// Index of a resolution, which is stored if it is new.
     pub(crate) fn resolution_of(&mut self, resolution: &Resolution) -> Result<usize> {
         let known = |kept: &Resolution| Arc::ptr_eq(&kept.condensed, &resolution.condensed);
         if let Some(found) = self.resolutions.iter().position(known) {

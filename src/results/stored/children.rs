@@ -4,54 +4,54 @@ use crate::error::{Result, Status, try_push};
 use crate::results::{Branch, Descent, Searched};
 
 impl Branch {
-    /// The solutions that were sought beside this response; `None` where none were asked for.
+    /// Extent of the search for solutions beside this response; `None` where none were requested.
     #[must_use]
     pub fn searched(&self) -> Option<Searched> {
-        self.searched
+        self.family.searched
     }
 
     pub(crate) fn set_searched(&mut self, searched: Searched) {
-        self.searched = Some(searched);
+        self.family.searched = Some(searched);
     }
 
     /// The branches that branch off from this one, and the detached curves beside it, as far as the option `branches` of
     /// [`crate::options::ForcedOptions`] sought them.
     #[must_use]
     pub fn children(&self) -> &[Self] {
-        &self.children
+        &self.family.children
     }
 
-    /// The same, writable.
+    /// The children of this branch, writable.
     pub(crate) fn children_mut(&mut self) -> &mut [Self] {
-        &mut self.children
+        &mut self.family.children
     }
 
     /// The children, taken out of the branch.
     pub(crate) fn take_children(&mut self) -> Vec<Self> {
-        core::mem::take(&mut self.children)
+        core::mem::take(&mut self.family.children)
     }
 
     /// Whether the caller stopped the branch or one of its children.
     pub(crate) fn was_stopped(&self) -> bool {
-        self.status() == Status::StoppedByCaller || self.children.iter().any(Self::was_stopped)
+        self.status() == Status::StoppedByCaller || self.family.children.iter().any(Self::was_stopped)
     }
 
-    /// Where the branch comes from; `None` for one that was asked for.
+    /// Origin of a branch that was found beside another one; `None` for a requested branch.
     #[must_use]
     pub fn descent(&self) -> Option<Descent> {
-        self.descent
+        self.family.descent
     }
 
-    /// Periods of the parent in one of this branch.
+    /// Number of periods of the parent in one period of this branch.
     pub(crate) fn periods(&self) -> usize {
-        self.descent.map_or(1, |descent| descent.periods)
+        self.family.descent.map_or(1, |descent| descent.periods)
     }
 
     pub(crate) fn set_descent(&mut self, descent: Descent) {
-        self.descent = Some(descent);
+        self.family.descent = Some(descent);
     }
 
     pub(crate) fn push_child(&mut self, child: Self) -> Result<()> {
-        try_push(&mut self.children, child, "the branches that branch off")
+        try_push(&mut self.family.children, child, "the branches that branch off")
     }
 }

@@ -2,31 +2,34 @@
 
 use crate::results::verdicts::verdict::BifurcationKind;
 
-/// Where a branch comes from.
+/// Origin of a branch that was found beside another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Descent {
-    /// The bifurcation of the parent from which it branches off, by its place in [`crate::results::Branch::bifurcations`]; `None`: a detached
-    /// curve.
+    /// Index of the bifurcation, in [`crate::results::Branch::bifurcations`] of the parent, from which the branch
+    /// starts; `None`: a detached curve.
     pub bifurcation: Option<usize>,
-    /// The kind of that bifurcation.
+    /// Kind of this bifurcation.
     pub kind: Option<BifurcationKind>,
-    /// Periods of the parent in one of its own. Its frequencies are those of the parent over this number.
+    /// Number of periods of the parent in one period of the branch. Its frequencies are those of the parent over this
+    /// number.
     pub periods: usize,
-    /// Frequency, its own, at which it comes back to its parent; NaN where it does not.
+    /// Frequency of the branch at which it comes back to its parent; NaN where it does not.
     pub merges_at: f64,
-    /// The nonlinear mode along which a detached curve was found, by its number among the linear ones.
+    /// Index, among the linear modes, of the nonlinear mode along which a detached curve was found; `None` without
+    /// one.
     pub mode: Option<usize>,
-    /// Factor of all forces at which a detached curve is born, and the one at which it merges with what lies below, as its mode
-    /// predicts them, or where a curve over the force turns; NaN where there is no such force.
+    /// Factor of all forces at which a detached curve is born, as its mode predicts it, or where a curve over the
+    /// force turns; NaN where there is no such force.
     pub born_at_force: f64,
-    /// The same.
+    /// Factor of all forces at which a detached curve merges with the curve below, predicted likewise; NaN where
+    /// there is no such force.
     pub merges_at_force: f64,
     /// Order n of the n:1 internal resonance beyond whose tongue a curve of a nonlinear mode lies; 0 otherwise.
     pub internal_resonance: usize,
 }
 
 impl Descent {
-    /// That of a curve that comes back to its parent at a frequency.
+    /// Origin of a curve that comes back to its parent at a frequency.
     pub(crate) fn merging_at(merges_at: f64) -> Self {
         Self {
             merges_at,
@@ -50,35 +53,37 @@ impl Default for Descent {
     }
 }
 
-/// The solutions beside a response that were sought. No list is complete: one that is not sought this way is not found.
+/// Extent of the search for solutions beside a response. No list is complete: solutions that are not sought in these
+/// ways are not found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Searched {
-    /// Bifurcations of all branches at which another one branches off, generations within the depth.
+    /// Number of bifurcations of all branches at which another branch starts, of generations within the depth.
     pub bifurcations: usize,
-    /// Bifurcations, and sides of them, from which no branch was found.
+    /// Number of bifurcations, or of sides of one, from which no branch was found.
     pub lost: usize,
-    /// Bifurcations that were left because the largest number of branches was reached, or whose generation is beyond the depth.
+    /// Number of bifurcations that were not followed because the largest number of branches was reached, or their
+    /// generation is beyond the depth.
     pub left: usize,
-    /// Nonlinear modes along which detached curves were sought, and those that could not be followed through their range.
+    /// Number of nonlinear modes along which detached curves were sought.
     pub modes: usize,
-    /// The same.
+    /// Number of these modes that could not be followed through their range.
     pub incomplete_modes: usize,
-    /// Range of the modal amplitude.
+    /// Range of the modal amplitude in which detached curves were sought.
     pub amplitudes: (f64, f64),
-    /// Resonances that the modes predict.
+    /// Number of resonances that the modes predict.
     pub resonances: usize,
-    /// Those near which no solution was found.
+    /// Number of predicted resonances near which no solution was found.
     pub lost_resonances: usize,
-    /// Nets of starts of subharmonic curves.
+    /// Number of nets of starts for subharmonic curves.
     pub starts: usize,
-    /// Curves of peaks and folds over the force, and those that ended early.
+    /// Number of curves of peaks and folds over the force.
     pub force_curves: usize,
-    /// The same.
+    /// Number of these curves that ended early.
     pub incomplete_force_curves: usize,
-    /// Solutions on these curves at the force itself, beside those that they begin at.
+    /// Number of solutions on these curves at the nominal force, besides those at which they start.
     pub crossings: usize,
-    /// Points of the response beside which deflation sought solutions, and curves that it found.
+    /// Number of points of the response beside which deflation sought solutions.
     pub deflations: usize,
-    /// The same.
+    /// Number of curves that deflation found.
     pub deflated: usize,
 }

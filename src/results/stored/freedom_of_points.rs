@@ -4,7 +4,7 @@ use crate::error::{Result, try_vec};
 
 const CONTEXT: &str = "the freedom of the points";
 
-/// Numbers of the stored points.
+/// Number of free sliders, and derivatives by their places, of the stored points.
 #[derive(Debug)]
 pub(crate) struct FreedomOfPoints {
     contacts: usize,
@@ -13,7 +13,7 @@ pub(crate) struct FreedomOfPoints {
 }
 
 impl FreedomOfPoints {
-    /// Those of so many points, as yet unknown.
+    /// Unknown values for `points` points.
     pub fn unknown(points: usize, contacts: usize) -> Result<Self> {
         Ok(Self {
             contacts,
@@ -22,7 +22,8 @@ impl FreedomOfPoints {
         })
     }
 
-    /// Sets those of a point: (contact, direction) of each free slider with the derivative of the amplitude by its place.
+    /// Sets the free sliders of a point: (contact, direction) of each, with the derivative of the amplitude by its
+    /// place.
     pub fn set(&mut self, point: usize, free: impl Iterator<Item = ((usize, usize), f64)>) {
         let mut count = 0;
         for ((contact, direction), derivative) in free {

@@ -6,17 +6,17 @@
 use crate::error::{Result, try_push};
 use crate::results::Branch;
 
-/// A limit cycle.
+/// A limit cycle: a point of a nonlinear mode with a damping ratio of zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimitCycle {
-    /// Number of the point; it continues the numbering of the curve.
+    /// Index of the stored point; it continues the numbering of the curve.
     pub point: usize,
-    /// Angular frequency.
+    /// Angular frequency of the limit cycle.
     pub omega: f64,
-    /// log₁₀ of the amplitude, the parameter of the mode.
+    /// Parameter of the mode: log₁₀ of the amplitude.
     pub log10_amplitude: f64,
-    /// Derivative of the damping ratio by it. A limit cycle with a negative slope is unstable, one with a positive
-    /// slope need not be stable: its Floquet multipliers decide.
+    /// Derivative of the damping ratio by log₁₀ of the amplitude. A limit cycle with a negative slope is unstable.
+    /// One with a positive slope need not be stable: its Floquet multipliers decide.
     pub slope: f64,
 }
 
@@ -27,7 +27,7 @@ impl Branch {
     /// `OutOfMemory`.
     pub fn limit_cycles(&self) -> Result<Vec<LimitCycle>> {
         let mut found = Vec::new();
-        for &(special, slope) in &self.limit_cycles {
+        for &(special, slope) in &self.special.limit_cycles {
             let cycle = LimitCycle {
                 point: special.point,
                 omega: special.omega,

@@ -2,6 +2,7 @@
 
 pub(crate) mod branch;
 pub(crate) mod branch_freedom;
+pub(crate) mod branch_parts;
 pub(crate) mod branch_recording;
 pub(crate) mod children;
 pub(crate) mod descent;

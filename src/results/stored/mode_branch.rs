@@ -3,51 +3,53 @@
 use crate::error::{Error, Result, try_copy, try_extend, try_push};
 use crate::model::natural_modes::repeated_modes::Multiple;
 use crate::options::Amplitude;
+use crate::options::Range;
 use crate::problem::epmc::{Gauge, LinearMode};
 use std::f64::consts::PI;
 
-/// Initial linear mode of a nonlinear mode.
+/// Linear mode from which a nonlinear mode starts, and its normalisation.
 #[derive(Clone, Debug)]
 pub struct ModeInfo {
-    /// Number of the linear mode, from 0 by rising frequency with stuck contacts.
+    /// Index of the linear mode, from 0 by rising frequency with stuck contacts.
     pub index: usize,
-    /// Its angular frequency without damping.
+    /// Angular frequency of the linear mode without damping.
     pub omega: f64,
-    /// Number of modes of that frequency.
+    /// Number of linear modes with this frequency.
     pub multiplicity: usize,
-    /// Rule that chose one of them.
+    /// Rule that chose one of the modes of this frequency.
     pub multiple: Multiple,
     /// Degree of freedom whose fundamental is real.
     pub reference_dof: usize,
     /// Waves per turn of the fundamental: the signed engine order of the computation.
     pub engine_order: i64,
-    /// Quantity that the parameter measures.
+    /// Quantity whose log₁₀ is the parameter of the branch.
     pub amplitude: Amplitude,
     /// log₁₀ of the amplitude up to which all contacts stick; −∞ if a law is never linear.
     pub linear_up_to: f64,
     /// log₁₀ of the amplitude at which the first contact slips: ∞ if none does on the branch, −∞ if one does at every
     /// amplitude, or at the first point and at which amplitude it began is not known.
     pub slip_from: f64,
-    /// The same of the first contact that presses at rest and lifts off.
+    /// log₁₀ of the amplitude at which the first statically pressed contact lifts off, with the special values of
+    /// `slip_from`.
     pub lift_off_from: f64,
     /// Natural frequencies of the wave with stuck contacts, as far as they were found.
     pub stuck: Vec<f64>,
-    /// The same with the contacts removed.
+    /// Natural frequencies of the wave with the contacts removed, as far as they were found.
     pub free: Vec<f64>,
 }
 
 /// Numbers of one point of a mode, in the caller's units; energies are of one sector.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ModePoint {
-    /// log₁₀ of the amplitude, the parameter.
+    /// Parameter of the mode: log₁₀ of the amplitude.
     pub log10_amplitude: f64,
     /// Modal amplitude (X₁ᴴ M X₁)^½ of one sector.
     pub modal_amplitude: f64,
-    /// Damping ratio D.
+    /// Damping ratio D of the mode.
     pub damping_ratio: f64,
-    /// T = Σ ½(hω)² X_hᴴ M X_h, twice the mean kinetic energy.
+    /// Energy T = Σ ½(hω)² X_hᴴ M X_h, twice the mean kinetic energy.
     pub energy: f64,
-    /// Share of the fundamental in it.
+    /// Share of the fundamental in this energy.
     pub fundamental_share: f64,
     /// Work of friction per cycle.
     pub friction_loss: f64,
@@ -58,7 +60,7 @@ pub struct ModePoint {
 }
 
 impl ModePoint {
-    /// All losses over 4πT. With artificial damping of mass form the balance of work makes this equal to the
+    /// Damping ratio by the energy balance: all losses over 4πT. With artificial damping of mass form this equals the
     /// damping ratio, whatever the number of harmonics.
     #[must_use]
     pub fn energy_damping_ratio(&self) -> f64 {
@@ -72,15 +74,16 @@ pub(crate) struct ModeData {
     pub info: ModeInfo,
     pub linear: LinearMode,
     pub gauge: Gauge,
-    /// The range of log₁₀ amplitude.
-    pub range: (f64, f64),
-    /// The numbers of all stored points, one array for each field, so that fields can be borrowed.
+    /// Range of log₁₀ of the amplitude.
+    pub range: Range,
+    /// The values of all stored points, one array for each field, so that fields can be borrowed.
     fields: [Vec<f64>; FIELDS],
-    /// Unknowns and parameter of each point of the curve, then its tangent.
+    /// State of each point of the curve: unknowns and parameter, then the tangent.
     states: Vec<f64>,
-    /// Offset of the state of each point.
+    /// Index in `states` at which the state of each point begins.
     begins: Vec<usize>,
-    /// Unknowns with parameter, and direction of the curve, of each branch point, in the order of the bifurcations.
+    /// State of each branch point, in the order of the bifurcations: unknowns with parameter, and direction of the
+    /// curve.
     branch_points: Vec<[Vec<f64>; 2]>,
 }
 
@@ -89,7 +92,7 @@ pub(crate) struct ModeData {
 const FIELDS: usize = 8;
 
 impl ModeData {
-    pub fn new(info: ModeInfo, linear: LinearMode, gauge: Gauge, range: (f64, f64)) -> Self {
+    pub fn new(info: ModeInfo, linear: LinearMode, gauge: Gauge, range: Range) -> Self {
         Self {
             info,
             linear,
@@ -146,18 +149,18 @@ impl ModeData {
         try_push(&mut self.branch_points, state, CONTEXT)
     }
 
-    /// Unknowns with parameter, and direction of the curve, of a branch point.
+    /// Unknowns with parameter, and direction of the curve, of the branch point with an index.
     pub fn branch_point(&self, number: usize) -> Option<(&[f64], &[f64])> {
         let [v, tangent] = self.branch_points.get(number)?;
         Some((v, tangent))
     }
 
-    /// A field at each stored point.
+    /// Values of a field at all stored points.
     pub fn field(&self, field: ModeField) -> &[f64] {
         &self.fields[field as usize]
     }
 
-    /// The numbers of a stored point.
+    /// All values of a stored point.
     pub fn point(&self, point: usize) -> Option<ModePoint> {
         let at = |field: ModeField| self.fields[field as usize].get(point).copied();
         Some(ModePoint {
@@ -173,7 +176,7 @@ impl ModeData {
     }
 }
 
-/// Field of a mode.
+/// Field of the values of a nonlinear mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ModeField {
     /// [`ModePoint::log10_amplitude`]

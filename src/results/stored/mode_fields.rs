@@ -4,7 +4,7 @@ use crate::results::Branch;
 use crate::results::stored::mode_branch::{ModeData, ModeField, ModeInfo, ModePoint};
 
 impl Branch {
-    /// Initial linear mode; `None` for a forced response.
+    /// Linear mode from which the nonlinear mode starts; `None` for a forced response.
     #[must_use]
     pub fn mode(&self) -> Option<&ModeInfo> {
         self.mode.as_ref().map(|m| &m.info)

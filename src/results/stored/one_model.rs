@@ -7,22 +7,22 @@ use crate::results::Branch;
 use crate::results::stored::origin::Origin;
 
 impl Branch {
-    /// Notes the model, whose wave the branch has unless it was given one of its own.
+    /// Notes the model of the branch; `on_wave`: the branch has the wave of the model.
     pub(crate) fn set_origin(&mut self, model: &Model, on_wave: bool) {
-        self.origin = Some(Origin {
+        self.family.origin = Some(Origin {
             model: model.fingerprint(),
             on_wave,
         });
     }
 
-    /// Refuses another model than that of the branch, at one of its points.
+    /// Refuses another model than that of the branch, for use with one of its points.
     ///
     /// # Errors
     /// `Argument`, naming what differs; a branch over a parameter.
     pub(crate) fn check_model(&self, model: &Model) -> Result<()> {
         self.check_one_model()?;
         self.check_size(model)?;
-        let on_wave = self.origin.is_none_or(|origin| origin.on_wave);
+        let on_wave = self.family.origin.is_none_or(|origin| origin.on_wave);
         self.check_origin(
             model,
             if self.mode_data().is_some() {
@@ -33,13 +33,14 @@ impl Branch {
         )
     }
 
-    /// The same for a synthesis, which has vibrating forces and damping of its own.
+    /// Refuses another model than that of the branch, for a synthesis, which may have other vibrating forces and
+    /// damping.
     pub(crate) fn check_model_of_synthesis(&self, model: &Model) -> Result<()> {
         self.check_origin(model, Use::Synthesis)
     }
 
     fn check_origin(&self, model: &Model, used: Use) -> Result<()> {
-        match &self.origin {
+        match &self.family.origin {
             Some(origin) => origin.model.check(model, used),
             None => Ok(()),
         }

@@ -2,7 +2,7 @@
 
 use crate::model::saved::fingerprint::Fingerprint;
 
-/// The model of a branch, and whether its wave is that of the branch.
+/// Fingerprint of the model of a branch; and whether the branch has the wave of the model.
 #[derive(Clone, Copy, Debug)]
 pub struct Origin {
     pub(crate) model: Fingerprint,

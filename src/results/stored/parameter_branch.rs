@@ -5,59 +5,59 @@ use crate::error::{Error, Result, try_push};
 /// An optimum of the amplitude over a parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct Optimum {
-    /// Number of the stored point.
+    /// Index of the stored point.
     pub point: usize,
-    /// Angular frequency.
+    /// Angular frequency of the optimum.
     pub omega: f64,
     /// Amplitude of the response degree of freedom; where the maximum of damping of a mode is followed, the damping
     /// ratio.
     pub amplitude: f64,
-    /// Value of the parameter.
+    /// Value of the parameter at the optimum.
     pub parameter: f64,
-    /// Whether it is largest there, else smallest.
+    /// Whether the amplitude is largest at this point; else it is smallest.
     pub is_maximum: bool,
 }
 
 /// A point at which a branch over a parameter turns: beyond its value the result does not exist.
 ///
-/// The turns of a peak that is followed through folds over the force are the forces at which a detached curve is born (a minimum) or
-/// merges with another one (a maximum). A fold turns there, too: under less force the two folds that meet do not exist. It also turns
-/// in a cusp.
+/// The turns of a peak that is followed through folds over the force are the forces at which a detached curve is born
+/// (a minimum) or merges with another one (a maximum). A followed fold turns at these forces, too: under less force the
+/// two folds that meet do not exist. It also turns in a cusp.
 #[derive(Clone, Copy, Debug)]
 pub struct Turn {
-    /// Number of the stored point.
+    /// Index of the stored point.
     pub point: usize,
-    /// Value of the parameter.
+    /// Value of the parameter at the turn.
     pub parameter: f64,
-    /// Angular frequency.
+    /// Angular frequency of the turn.
     pub omega: f64,
-    /// The result there, as that of an [`Optimum`].
+    /// Followed result at the turn, as in an [`Optimum`].
     pub amplitude: f64,
-    /// Whether the parameter is largest there, else smallest.
+    /// Whether the parameter is largest at this point; else it is smallest.
     pub is_maximum: bool,
 }
 
 /// A peak that is higher than the followed one, in the same design.
 #[derive(Clone, Copy, Debug)]
 pub struct HigherPeak {
-    /// Number of the stored point of the followed peak.
+    /// Index of the stored point of the followed peak.
     pub point: usize,
     /// Value of the parameter.
     pub parameter: f64,
     /// Angular frequency of the higher peak.
     pub omega: f64,
-    /// Its amplitude.
+    /// Amplitude of the higher peak.
     pub amplitude: f64,
 }
 
-/// Numbers of the stored points over a parameter.
+/// Values of the stored points of a branch over a parameter.
 #[derive(Debug, Default)]
 pub(crate) struct ParameterData {
     /// Value of the parameter at each stored point.
     pub(crate) parameter: Vec<f64>,
-    /// Total derivative of the amplitude by it; NaN where there is none.
+    /// Total derivative of the amplitude by the parameter; NaN where it does not exist.
     pub(crate) d_amplitude: Vec<f64>,
-    /// Total derivative of the largest damping ratio by it; NaN where a response is followed.
+    /// Total derivative of the largest damping ratio by the parameter; NaN where a response is followed.
     pub(crate) d_damping: Vec<f64>,
     pub(crate) optima: Vec<Optimum>,
     pub(crate) turns: Vec<Turn>,
@@ -77,12 +77,12 @@ impl ParameterData {
         Ok(())
     }
 
-    /// Stores an optimum.
+    /// Stores an optimum of the branch.
     pub fn push_optimum(&mut self, optimum: Optimum) -> Result<()> {
         try_push(&mut self.optima, optimum, "the optima")
     }
 
-    /// Stores a turn.
+    /// Stores a turn of the branch.
     pub fn push_turn(&mut self, turn: Turn) -> Result<()> {
         try_push(&mut self.turns, turn, "the turns")
     }

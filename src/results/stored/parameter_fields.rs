@@ -28,7 +28,8 @@ impl Branch {
         self.parameter.as_ref().map(|data| &data.d_damping[..self.points()])
     }
 
-    /// The same at a stored point, the special ones included.
+    /// Total derivative of the largest damping ratio of a mode by the parameter at a stored point, the special ones
+    /// included.
     #[must_use]
     pub fn d_damping_at(&self, point: usize) -> Option<f64> {
         self.parameter.as_ref()?.d_damping.get(point).copied()
@@ -41,7 +42,8 @@ impl Branch {
         self.parameter.as_ref().map_or(&[], |data| &data.higher)
     }
 
-    /// Parameter, and the total derivative of the amplitude by it, at a stored point, the special ones included.
+    /// Value of the parameter, and total derivative of the amplitude by it, at a stored point, the special ones
+    /// included.
     #[must_use]
     pub fn parameter_at(&self, point: usize) -> Option<(f64, f64)> {
         let data = self.parameter.as_ref()?;

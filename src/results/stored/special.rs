@@ -3,9 +3,9 @@
 /// A solution beside the curve: a peak, a fold, or one at a requested parameter value.
 #[derive(Clone, Copy, Debug)]
 pub struct Special {
-    /// Number of the point; it continues the numbering of the curve.
+    /// Index of the stored point; it continues the numbering of the curve.
     pub point: usize,
-    /// Angular frequency.
+    /// Angular frequency of the point.
     pub omega: f64,
     /// Amplitude of the response degree of freedom.
     pub amplitude: f64,

@@ -4,22 +4,22 @@ use crate::error::{Error, Result};
 use crate::results::Branch;
 use crate::results::stored::mode_branch::ModeField;
 
-/// A number that each stored point has.
+/// Field of values that each stored point has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PointField {
-    /// Angular frequency.
+    /// Angular frequency of the point.
     Omega,
     /// Amplitude of the response degree of freedom.
     Amplitude,
-    /// Relative residual.
+    /// Relative residual of the point.
     Residual,
-    /// Newton iterations.
+    /// Number of Newton iterations of the point.
     NewtonIterations,
     /// Highest harmonic number carried.
     HarmonicsUsed,
     /// Share of the period that each contact slips, for each contact.
     SlipFraction,
-    /// Error by sampling.
+    /// Relative change of the sampled forces with the number of samples.
     SamplingError,
     /// Estimated error of the response, in a nonlinear mode of the frequency.
     ErrorEstimate,
@@ -39,26 +39,29 @@ pub enum PointField {
     DAmplitude,
     /// Total derivative of the largest damping ratio by the parameter.
     DDamping,
-    /// A number of a nonlinear mode.
+    /// A value of a nonlinear mode.
     Mode(ModeField),
 }
 
 impl Branch {
-    /// A number of all stored points; `None` where the branch does not have it.
+    /// A field of all stored points; `None` where the branch does not have it.
     pub(crate) fn stored_field(&self, field: PointField) -> Option<&[f64]> {
         let is_mode = self.mode.is_some();
         match field {
-            PointField::Omega => Some(&self.omega),
-            PointField::Amplitude => Some(&self.amplitude),
-            PointField::Residual => Some(&self.residual),
-            PointField::NewtonIterations => Some(&self.iterations),
-            PointField::HarmonicsUsed => Some(&self.harmonics_used),
-            PointField::SlipFraction => Some(&self.slip_fraction),
-            PointField::SamplingError => Some(&self.sampling_error),
-            PointField::ErrorEstimate => Some(&self.error_estimate),
-            PointField::DampingErrorEstimate => is_mode.then_some(&self.damping_error_estimate[..]),
-            PointField::FloquetRadius => self.tells_stability.then_some(&self.floquet_radius[..]),
-            PointField::UnstableDirections => self.tells_stability.then_some(&self.unstable_directions[..]),
+            PointField::Omega => Some(&self.table.omega),
+            PointField::Amplitude => Some(&self.table.amplitude),
+            PointField::Residual => Some(&self.table.residual),
+            PointField::NewtonIterations => Some(&self.table.iterations),
+            PointField::HarmonicsUsed => Some(&self.table.harmonics_used),
+            PointField::SlipFraction => Some(&self.table.slip_fraction),
+            PointField::SamplingError => Some(&self.errors.sampling),
+            PointField::ErrorEstimate => Some(&self.errors.truncation),
+            PointField::DampingErrorEstimate => is_mode.then_some(&self.errors.damping[..]),
+            PointField::FloquetRadius => self.run.tells_stability.then_some(&self.stability.floquet_radius[..]),
+            PointField::UnstableDirections => self
+                .run
+                .tells_stability
+                .then_some(&self.stability.unstable_directions[..]),
             PointField::FreeSliders => self.freedom.as_ref().map(|freedom| freedom.count()),
             PointField::ByPlace => self.freedom.as_ref().map(|freedom| freedom.by_place().as_flattened()),
             PointField::Parameter => self.parameter.as_ref().map(|data| &data.parameter[..]),
@@ -72,13 +75,16 @@ impl Branch {
         }
     }
 
-    /// Gives the points without stability, those beside the curve among them, NaN for it.
+    /// Completes the fields of stability by NaN for points without it, including those beside the curve.
     pub(crate) fn complete_stability(&mut self) -> Result<()> {
-        if !self.tells_stability {
+        if !self.run.tells_stability {
             return Ok(());
         }
-        let stored = self.omega.len();
-        for numbers in [&mut self.floquet_radius, &mut self.unstable_directions] {
+        let stored = self.table.omega.len();
+        for numbers in [
+            &mut self.stability.floquet_radius,
+            &mut self.stability.unstable_directions,
+        ] {
             numbers
                 .try_reserve(stored.saturating_sub(numbers.len()))
                 .map_err(|_| Error::out_of_memory("the stability of the points"))?;

@@ -2,26 +2,26 @@
 
 use num_complex::Complex64;
 
-/// Reason of a multiplier.
+/// Reason why a multiplier has its value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MultiplierClass {
-    /// Decides about stability.
+    /// No known reason: the multiplier decides about stability.
     Ordinary,
-    /// Zero, because a slider that slips forgets its place.
+    /// The multiplier is zero, because a slider that slips forgets its place.
     Memory,
-    /// One, because the slider of a contact that sticks for ever stays where it is put.
+    /// The multiplier is one, because the slider of a contact that always sticks stays where it is put.
     NeutralStuck,
-    /// One, because a rigid motion takes all sliders along.
+    /// The multiplier is one, because a rigid motion takes all sliders along.
     NeutralRigid,
-    /// One, because an autonomous motion may begin at any time.
+    /// The multiplier is one, because an autonomous motion may begin at any time.
     Trivial,
 }
 
 /// A multiplier of one period of the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Multiplier {
-    /// μ
+    /// Value μ of the multiplier.
     pub value: Complex64,
-    /// Reason of it.
+    /// Reason why the multiplier has this value.
     pub class: MultiplierClass,
 }

@@ -9,32 +9,34 @@ use num_complex::Complex64;
 /// Stability of a periodic motion.
 #[derive(Clone, Debug)]
 pub struct Floquet {
-    /// `Ok` or `StoppedByCaller`; then there are no multipliers.
+    /// Status: `Ok`, or `StoppedByCaller` and then without multipliers.
     pub status: Status,
     /// Multipliers of one period by falling modulus. All ordinary ones are NaN where the motion touches an event.
     pub multipliers: Vec<Multiplier>,
-    /// Largest modulus of the ordinary ones; NaN where the motion touches an event.
+    /// Largest modulus of the ordinary multipliers; NaN where the motion touches an event.
     pub radius: f64,
     /// Number of ordinary multipliers outside the unit circle.
     pub unstable: usize,
-    /// Number of multipliers that are 1 by construction, the trivial one of an autonomous motion not among them.
+    /// Number of multipliers that are 1 by construction, without the trivial one of an autonomous motion.
     pub neutral: usize,
-    /// Angular frequency of the motion, that of the point unless no force drives it.
+    /// Angular frequency of the motion; equal to that of the point, unless no force drives it.
     pub omega: f64,
-    /// Distance of the motion from that of the point, relative to it, in the harmonics 0 .. H of the branch; 0 without
-    /// shooting.
+    /// Distance between the motion in time and the motion of the point, relative to the latter, in the harmonics 0 ..
+    /// H of the branch; 0 without shooting.
     pub orbit_change: f64,
     /// Largest change of the motion over a period, relative to the largest displacement and velocity.
     pub residual: f64,
-    /// The contact that touches an event, and the event: derivatives differ on its two sides.
+    /// The contact that touches an event without passing it, and the kind of event: derivatives differ on its two
+    /// sides.
     pub grazing: Option<(usize, Grazing)>,
-    /// Modes of each nodal diameter on which the motion and its perturbations were computed; 0: on all degrees of freedom.
+    /// Number of modes of each nodal diameter on which the motion and its perturbations were computed; 0: on all
+    /// degrees of freedom.
     pub modes: usize,
     /// Largest change of a multiplier above half the radius from half as many modes; 0 on all degrees of freedom. NaN where
     /// `orbit_change` is above a fifth: two numbers of modes then bound nothing.
     pub modes_change: f64,
-    /// Estimate of the error of the radius that the other modes make, from the changes of those multipliers that reach as far from
-    /// zero; 0 on all degrees of freedom, NaN as `modes_change`.
+    /// Estimated error of the radius by the omitted modes, from the changes of those multipliers that may be as
+    /// large; 0 on all degrees of freedom, NaN as `modes_change`.
     pub radius_error: f64,
 }
 
@@ -57,7 +59,7 @@ impl Floquet {
         }
     }
 
-    /// The multipliers sorted, with the numbers that follow from them.
+    /// Sorts the multipliers, and computes radius and numbers from them.
     pub(crate) fn of(mut multipliers: Vec<Multiplier>, grazing: Option<(usize, Grazing)>) -> Self {
         if grazing.is_some() {
             for m in multipliers.iter_mut().filter(|m| m.class == MultiplierClass::Ordinary) {

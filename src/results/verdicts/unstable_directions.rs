@@ -14,13 +14,13 @@ impl Branch {
         let mut found = Vec::new();
         if self.mode.is_some() {
             // A nonlinear mode has no multipliers: its branch points are those of its equations, and its folds turn in amplitude.
-            let located = self.bifurcations.iter().map(|located| located.bifurcation);
+            let located = self.special.bifurcations.iter().map(|located| located.bifurcation);
             for bifurcation in located.filter(|found| found.kind == BifurcationKind::BranchPoint) {
                 try_push(&mut found, bifurcation, "the bifurcations")?;
             }
             return Ok(found);
         }
-        for located in &self.bifurcations {
+        for located in &self.special.bifurcations {
             let mut bifurcation = located.bifurcation;
             match bifurcation.kind {
                 BifurcationKind::Fold if bifurcation.unstable == [None; 2] => {
@@ -47,16 +47,17 @@ impl Branch {
         Ok(found)
     }
 
-    /// Leaves the bifurcations at these points out of the list.
+    /// Removes the bifurcations at these points from the list.
     pub(crate) fn leave_bifurcations(&mut self, points: &[usize]) {
-        self.bifurcations
+        self.special
+            .bifurcations
             .retain(|located| !points.contains(&located.bifurcation.point));
     }
 
-    /// A bifurcation of a kind at most one point of the curve away.
+    /// A bifurcation of the given kind that is at most one point of the curve away.
     fn beside(&self, from: &Located, kind: BifurcationKind) -> Option<Beside> {
         let near = |other: &&Located| other.bifurcation.kind == kind && other.after.abs_diff(from.after) <= 1;
-        let found = self.bifurcations.iter().find(near)?;
+        let found = self.special.bifurcations.iter().find(near)?;
         Some(Beside {
             after: found.after,
             unstable: found.bifurcation.unstable,
@@ -66,22 +67,22 @@ impl Branch {
     /// Numbers of unstable directions of the points of the curve before and after the first `after` ones.
     fn unstable_around(&self, after: usize) -> [Option<usize>; 2] {
         let at = |point: Option<usize>| -> Option<usize> {
-            let number = *self.unstable_directions.get(point?)?;
+            let number = *self.stability.unstable_directions.get(point?)?;
             // Small whole numbers.
             number.is_finite().then_some(number as usize)
         };
         [at(after.checked_sub(1)), at(Some(after))]
     }
 
-    /// The curve for a figure, in stretches that meet at the bifurcations, or at a point of the curve. Without stability
-    /// there is one stretch.
+    /// The curve for a plot, in stretches of constant stability that meet at bifurcations, or at a point of the
+    /// curve. Without stability there is one stretch.
     ///
     /// # Errors
     /// `OutOfMemory`.
     pub fn stretches(&self) -> Result<Vec<Stretch>> {
         const CONTEXT: &str = "the stretches of the curve";
         let bifurcations = self.bifurcations()?;
-        let is_unstable = |point: usize| self.unstable_directions.get(point).is_some_and(|n| *n > 0.0);
+        let is_unstable = |point: usize| self.stability.unstable_directions.get(point).is_some_and(|n| *n > 0.0);
         let mut found: Vec<Stretch> = Vec::new();
         for (i, point) in self
             .omega()
@@ -95,7 +96,7 @@ impl Branch {
                 last => {
                     let mut next = Vec::new();
                     if let Some(last) = last {
-                        let located = self.bifurcations.iter().filter(|l| l.after == i);
+                        let located = self.special.bifurcations.iter().filter(|l| l.after == i);
                         let listed = located.filter_map(|l| {
                             let same = |b: &&Bifurcation| b.point == l.bifurcation.point;
                             bifurcations.iter().find(same)
@@ -123,34 +124,34 @@ impl Branch {
     /// Whether stability was requested.
     #[must_use]
     pub fn tells_stability(&self) -> bool {
-        self.tells_stability
+        self.run.tells_stability
     }
 
     /// Notes that stability was requested.
     pub(crate) fn tell_stability(&mut self) {
-        self.tells_stability = true;
+        self.run.tells_stability = true;
     }
 
-    /// Largest modulus of the ordinary Floquet multipliers at each point of the curve; NaN where it is not known, and
-    /// none without the solver option `stability`.
+    /// Largest modulus of the ordinary Floquet multipliers at each point of the curve; NaN where it is not known.
+    /// Empty without the solver option `stability`.
     #[must_use]
     pub fn floquet_radius(&self) -> &[f64] {
-        &self.floquet_radius[..self.points().min(self.floquet_radius.len())]
+        &self.stability.floquet_radius[..self.points().min(self.stability.floquet_radius.len())]
     }
 
     /// Number of ordinary Floquet multipliers outside the unit circle at each point of the curve, as
     /// [`Self::floquet_radius`].
     #[must_use]
     pub fn unstable_directions(&self) -> &[f64] {
-        &self.unstable_directions[..self.points().min(self.unstable_directions.len())]
+        &self.stability.unstable_directions[..self.points().min(self.stability.unstable_directions.len())]
     }
 
     /// Stores the stability of the next point of the curve.
     pub(crate) fn push_verdict(&mut self, verdict: &Verdict) -> Result<()> {
         const CONTEXT: &str = "the stability of the points";
         let count = verdict.unstable.map_or(f64::NAN, |count| count as f64);
-        try_push(&mut self.floquet_radius, verdict.radius, CONTEXT)?;
-        try_push(&mut self.unstable_directions, count, CONTEXT)
+        try_push(&mut self.stability.floquet_radius, verdict.radius, CONTEXT)?;
+        try_push(&mut self.stability.unstable_directions, count, CONTEXT)
     }
 }
 

@@ -17,13 +17,13 @@ const VERDICT_REAL: f64 = 1e-6;
 /// Stability of one motion.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Verdict {
-    /// Ordinary multipliers by falling modulus; none where stability is not known.
+    /// Ordinary multipliers by falling modulus; empty where stability is not known.
     pub multipliers: Vec<Complex64>,
-    /// Largest modulus of them; NaN where it is not known.
+    /// Largest modulus of these multipliers; NaN where it is not known.
     pub radius: f64,
-    /// Number of them outside the unit circle.
+    /// Number of these multipliers outside the unit circle; `None` where it is not known.
     pub unstable: Option<usize>,
-    /// Whether they are those of the motion in time, not of a truncated one.
+    /// Whether the multipliers belong to the motion in time, not to a truncated one.
     pub in_time: bool,
 }
 
@@ -42,8 +42,8 @@ impl Verdict {
         outside.filter(|m| !is_positive(m)).count()
     }
 
-    /// ln |μ| of the multiplier with the number `order` by falling modulus, those that are positive real numbers
-    /// omitted on request, and the multiplier.
+    /// Growth ln |μ| of the multiplier with index `order` by falling modulus, and the multiplier; positive real
+    /// numbers are left out if `without_positive`.
     pub fn growth(&self, order: usize, without_positive: bool) -> (f64, Complex64) {
         let mut counted = self
             .multipliers
@@ -87,27 +87,28 @@ impl BifurcationKind {
     }
 }
 
-/// A bifurcation.
+/// A bifurcation of a branch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bifurcation {
-    /// Number of the point; it continues the numbering of the curve.
+    /// Index of the stored point; it continues the numbering of the curve.
     pub point: usize,
-    /// Angular frequency.
+    /// Angular frequency of the bifurcation.
     pub omega: f64,
     /// Amplitude of the response degree of freedom.
     pub amplitude: f64,
-    /// Kind.
+    /// Kind of the bifurcation.
     pub kind: BifurcationKind,
-    /// Numbers of unstable directions before and after it along the branch; `None` where they are not known.
+    /// Numbers of unstable directions before and after the bifurcation along the branch; `None` where they are not
+    /// known.
     pub unstable: [Option<usize>; 2],
 }
 
 /// A part of a curve on which stability does not change.
 #[derive(Clone, Debug)]
 pub struct Stretch {
-    /// Whether its motions are unstable.
+    /// Whether the motions of the stretch are unstable.
     pub unstable: bool,
-    /// Angular frequency and amplitude of its points.
+    /// Angular frequency and amplitude of each point of the stretch.
     pub points: Vec<(f64, f64)>,
 }
 

@@ -11,7 +11,7 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the responses";
 
-/// The gauges on the condensed model of some points.
+/// Gauges of the responses on the condensed model of some points.
 struct OnModel<'a> {
     condensed: &'a Condensed,
     gauges: Vec<Gauge>,
@@ -37,7 +37,7 @@ impl<'a> OnModel<'a> {
         })
     }
 
-    /// Writes the signals of the point that is selected, at the angular frequency ω.
+    /// Writes the signals of the selected point at the angular frequency ω.
     fn fill(&mut self, recovery: &mut Recovery<'_>, omega: f64) -> Result<()> {
         let (set, m) = (self.condensed.set(), self.condensed.set().packed_len());
         self.signals.fill(0.0);
@@ -55,9 +55,9 @@ impl<'a> OnModel<'a> {
 }
 
 impl Branch {
-    /// Reads responses at all stored points, whatever the branch was asked for: the values of a nonlinear mode, of a result over a
-    /// parameter, or of further gauges of a forced response. They have no peaks and no errors. A response without degrees of
-    /// freedom is that of the response degree of freedom.
+    /// Reads responses at all stored points, whether or not the branch was computed with them: for a nonlinear mode,
+    /// a result over a parameter, or further gauges of a forced response. They have no peaks and no errors. A
+    /// response without degrees of freedom reads the response degree of freedom.
     ///
     /// # Errors
     /// Those of the responses, naming their numbers; those of [`Self::harmonics_at`].
@@ -65,7 +65,7 @@ impl Branch {
         self.read_responses_with(responses, &Interrupt::none())
     }
 
-    /// The same as [`Self::read_responses`], and the caller may stop it.
+    /// Reads responses as [`Self::read_responses`], and the caller may stop it.
     ///
     /// # Errors
     /// As [`Self::read_responses`]; `StoppedByCaller`.
@@ -77,20 +77,20 @@ impl Branch {
         check_responses(responses, self.ndof(), self.reduction().sectors)?;
         let mut found = Vec::new();
         for response in responses {
-            let series = ResponseSeries::new(response, self.response_dof, false)?;
+            let series = ResponseSeries::new(response, self.run.response_dof, false)?;
             try_push(&mut found, series, CONTEXT)?;
         }
         if responses.is_empty() || self.stored() == 0 {
             return Ok(found);
         }
         let mut recovery = Recovery::at(self, 0, interrupt)?;
-        let mut model = OnModel::new(self.condensed_at(0), responses, self.response_dof)?;
-        for (point, &omega) in self.omega.iter().enumerate() {
+        let mut model = OnModel::new(self.condensed_at(0), responses, self.run.response_dof)?;
+        for (point, &omega) in self.table.omega.iter().enumerate() {
             interrupt.part(Phase::Results, point, self.stored())?;
             recovery.go_to(self, point)?;
             let condensed = self.condensed_at(point);
             if !core::ptr::eq(condensed, model.condensed) {
-                model = OnModel::new(condensed, responses, self.response_dof)?;
+                model = OnModel::new(condensed, responses, self.run.response_dof)?;
             }
             model.fill(&mut recovery, omega)?;
             let set = condensed.set();

@@ -11,13 +11,13 @@ const CONTEXT: &str = "the responses";
 /// A response at a point, with its estimated relative error.
 #[derive(Clone, Copy, Debug)]
 pub struct SeenWithError {
-    /// The response.
+    /// Value of the response and its derivatives.
     pub seen: Seen,
-    /// NaN where it is unknown.
+    /// Estimated relative error; NaN where it is unknown.
     pub error: f64,
 }
 
-/// A response that was asked for, over the stored points of a branch.
+/// A requested response, over the stored points of a branch.
 #[derive(Clone, Debug)]
 pub struct ResponseSeries {
     measure: Measure,
@@ -25,19 +25,20 @@ pub struct ResponseSeries {
     dofs: Vec<usize>,
     weights: Vec<f64>,
     sector: usize,
-    /// Whether it is the amplitude that every forced response observes.
+    /// Whether the response is the amplitude that every forced response observes.
     is_observed: bool,
     value: Vec<f64>,
     complex: Vec<Complex64>,
     error: Vec<f64>,
     instant: Vec<f64>,
     peaks: Vec<Special>,
-    /// Both sides of each kink.
+    /// Kinks of the response, by the stored points on both sides of each.
     kinks: Vec<Special>,
 }
 
 impl ResponseSeries {
-    /// No point yet of a response; without degrees of freedom it is that of `default`.
+    /// A series of a response without points; a response without degrees of freedom reads the degree of freedom
+    /// `default`.
     pub(crate) fn new(response: &Response<'_>, default: usize, is_observed: bool) -> Result<Self> {
         let only = [default];
         let dofs = if response.dofs.is_empty() { &only } else { response.dofs };
@@ -57,12 +58,12 @@ impl ResponseSeries {
         })
     }
 
-    /// Whether it is the amplitude that every forced response observes.
+    /// Whether the response is the amplitude that every forced response observes.
     pub(crate) fn is_observed(&self) -> bool {
         self.is_observed
     }
 
-    /// Appends a stored point, in the solver's unit of this length.
+    /// Appends a stored point, whose values are in the solver's unit `length`.
     pub(crate) fn push(&mut self, of_point: &SeenWithError, length: f64) -> Result<()> {
         let reading = of_point.seen.reading;
         try_push(&mut self.value, reading.value * length, CONTEXT)?;
@@ -79,7 +80,7 @@ impl ResponseSeries {
         try_push(&mut self.kinks, side, CONTEXT)
     }
 
-    /// The response as it was asked for.
+    /// The response as it was requested.
     #[must_use]
     pub fn response(&self) -> Response<'_> {
         Response {
@@ -91,7 +92,7 @@ impl ResponseSeries {
         }
     }
 
-    /// The measure at each stored point: those of the curve, then the special ones.
+    /// Value of the measure at each stored point: first the points of the curve, then the special ones.
     #[must_use]
     pub fn values(&self) -> &[f64] {
         &self.value
@@ -109,15 +110,15 @@ impl ResponseSeries {
         &self.error
     }
 
-    /// The instant of the largest magnitude of a peak, or of the largest value of a range, at each stored point: the phase ωt of
+    /// Instant of a peak's largest magnitude, or of a range's largest value, at each stored point: the phase ωt of
     /// the period, in [0, 2π); NaN for other measures.
     #[must_use]
     pub fn instants(&self) -> &[f64] {
         &self.instant
     }
 
-    /// Kinks of a peak or a range, where another instant of the period takes the lead: the last solution before and the first one
-    /// behind, in the order of the branch. Derivatives at these points are those of the two sides.
+    /// Kinks of a peak or a range, where another instant of the period takes the lead: the last solution before and
+    /// the first one after, in the order of the branch. Derivatives at these points belong to the two sides.
     #[must_use]
     pub fn kinks(&self) -> impl ExactSizeIterator<Item = (Special, Special)> {
         self.kinks.chunks_exact(2).map(|sides| (sides[0], sides[1]))

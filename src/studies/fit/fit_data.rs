@@ -5,16 +5,16 @@ use crate::model::Model;
 use crate::options::{Measure, Response};
 use num_complex::Complex64;
 
-/// Kinds of data.
+/// Kind of the data of a set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DataKind {
-    /// Complex amplitude of a response at angular frequencies.
+    /// Complex amplitudes of a response at angular frequencies.
     Response,
-    /// Measure of a response at angular frequencies.
+    /// Measures of a response at angular frequencies.
     Amplitude,
-    /// Highest measure of a response near an angular frequency, and the angular frequency of the peak.
+    /// Highest measures of a response near angular frequencies, and the angular frequencies of these peaks.
     Peak,
-    /// Angular frequency and damping ratio of a nonlinear mode at log₁₀ of its modal amplitude.
+    /// Angular frequencies and damping ratios of a nonlinear mode at log₁₀ of its modal amplitude.
     Backbone,
     /// Angular frequency and damping ratio of the mode in which all contacts stick.
     LinearMode,
@@ -27,20 +27,22 @@ pub struct FitData<'a> {
     pub kind: DataKind,
     /// Factor on all forces of the model.
     pub force_factor: f64,
-    /// The response of the first three kinds.
+    /// Response that was measured, for the first three kinds.
     pub response: Response<'a>,
-    /// Number of the linear mode with stuck contacts of the other kinds.
+    /// Index of the linear mode with stuck contacts, for the other kinds.
     pub mode: usize,
-    /// Range of angular frequency that is followed; `None`: that of `x`, for a peak 0.7 to 1.3 times it.
+    /// Range of angular frequency that is followed; `None`: the range of `x`, for a peak 0.7 to 1.3 times `x`.
     pub range: Option<(f64, f64)>,
     /// Angular frequencies, or log₁₀ of modal amplitudes; a linear mode does not use them.
     pub x: &'a [f64],
-    /// Complex amplitudes; measures in the real part; peaks with the angular frequency in the imaginary part; angular frequencies with
-    /// the damping ratio in the imaginary part.
+    /// Data by kind: complex amplitudes; measures as real parts; peaks with their angular frequency as imaginary
+    /// part; angular frequencies of a mode with its damping ratio as imaginary part.
     pub value: &'a [Complex64],
-    /// Standard deviations: of |X|, that is √2 times that of each part; of the measure; of the angular frequency of a mode.
+    /// Standard deviations: for complex amplitudes of |X|, √2 times that of each part; for measures and peaks of the
+    /// measure; for modes of the angular frequency.
     pub sigma: &'a [f64],
-    /// Standard deviations of the angular frequency of a peak, and of the damping ratio; none: these are not data.
+    /// Standard deviations of the angular frequency of a peak, or of the damping ratio of a mode; empty: these
+    /// numbers are not used as data.
     pub second_sigma: &'a [f64],
 }
 
@@ -61,7 +63,7 @@ impl Default for FitData<'_> {
 }
 
 impl FitData<'_> {
-    /// Checks a set; one that is predicted needs no values.
+    /// Checks a data set; one that is to be predicted needs no values.
     ///
     /// # Errors
     /// `Dimension`, `NotFinite` or `Argument`, naming the field; those of [`Response::check`].
@@ -126,7 +128,7 @@ impl FitData<'_> {
         matches!(self.kind, DataKind::Response | DataKind::Amplitude | DataKind::Peak)
     }
 
-    /// One over the standard deviations of both numbers of a datum; 0 for a number that is no datum.
+    /// Weights of both numbers of a datum: 1/σ of its standard deviation, or 0 for a number that is not used.
     pub(super) fn weights(&self, i: usize) -> [f64; 2] {
         let first = 1.0 / self.sigma[i];
         match self.kind {
@@ -138,7 +140,7 @@ impl FitData<'_> {
         }
     }
 
-    /// Frequencies between which the response is followed.
+    /// Range of angular frequency in which the response is followed.
     pub(super) fn followed(&self) -> (f64, f64) {
         let low = self.x.iter().fold(f64::INFINITY, |a, b| a.min(*b));
         let high = self.x.iter().fold(0.0_f64, |a, b| a.max(*b));

@@ -2,12 +2,13 @@
 
 use crate::error::{Result, fail};
 
-/// Measure of a residual r in units of its standard deviation.
+/// Loss of a residual r, in units of its standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Loss {
-    /// r².
+    /// The square r².
     Square,
-    /// r² up to this number of standard deviations, and its tangent beyond (Huber 1964, doi:10.1214/aoms/1177703732).
+    /// The square r² up to this number of standard deviations, and its tangent beyond (Huber 1964,
+    /// doi:10.1214/aoms/1177703732).
     Huber(f64),
 }
 
@@ -18,11 +19,11 @@ pub(super) const FIT_STEP: f64 = 1e-6;
 /// Options of a fit.
 #[derive(Clone, Copy, Debug)]
 pub struct FitOptions {
-    /// Measure of the residuals.
+    /// Loss of the residuals.
     pub loss: Loss,
-    /// Points from which the search begins: the given one, then those of a fixed sequence within the bounds.
+    /// Number of starts of the search: the given one, then those of a fixed sequence within the bounds.
     pub starts: usize,
-    /// Largest number of iterations from each.
+    /// Largest number of iterations from each start.
     pub max_iterations: usize,
     /// Step, in standard deviations of the unknowns, at which the search ends. With 200 numbers of data and more it ends at an estimated
     /// error of 1e-5, unless this is smaller than the default; a complex point has two numbers.
@@ -56,7 +57,7 @@ const FIT_LARGEST: (usize, usize) = (1000, 10_000);
 const NORMAL_INTERVALS: usize = 200;
 
 impl FitOptions {
-    /// Checks every field.
+    /// Checks the values of all options.
     ///
     /// # Errors
     /// `Argument`, naming the field, its value and its range.
@@ -82,7 +83,7 @@ impl FitOptions {
 }
 
 impl Loss {
-    /// The measure of a residual.
+    /// Loss of a residual r.
     pub(super) fn cost(self, r: f64) -> f64 {
         match self {
             Self::Huber(k) if r.abs() > k => 2.0 * k * r.abs() - k * k,
@@ -90,7 +91,7 @@ impl Loss {
         }
     }
 
-    /// Half of its derivative over r.
+    /// Weight of a residual r: half the derivative of the loss, over r.
     pub(super) fn weight(self, r: f64) -> f64 {
         match self {
             Self::Huber(k) if r.abs() > k => k / r.abs(),
@@ -98,7 +99,7 @@ impl Loss {
         }
     }
 
-    /// Variance of an estimate over that of least squares under normal noise: E ψ²/(E ψ')².
+    /// Variance of an estimate with this loss over that of least squares under normal noise: E ψ²/(E ψ')².
     pub(super) fn inefficiency(self) -> f64 {
         let Self::Huber(k) = self else { return 1.0 };
         // Beyond 12 standard deviations nothing is left of the distribution.

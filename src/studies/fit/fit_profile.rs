@@ -25,37 +25,38 @@ const PROFILE_BETTER: f64 = 1e-4;
 /// Kind: rounding.
 const PROFILE_ROUNDING: f64 = 1e-14;
 
-/// The parameter that is scanned.
+/// The parameter whose values are scanned.
 #[derive(Clone, Copy, Debug)]
 pub struct Profiled<'a> {
     /// Values of all parameters that were fitted.
     pub theta: &'a [f64],
-    /// Number of the scanned one among them; those that are tied to it go with it.
+    /// Index of the scanned parameter in `theta`. Parameters that are tied to it are scanned with it.
     pub number: usize,
-    /// Its values, in ascending order.
+    /// Values of the scanned parameter, in ascending order.
     pub values: &'a [f64],
 }
 
-/// Least loss over one parameter.
+/// Least loss of a fit over the values of one parameter.
 #[derive(Clone, Debug)]
 pub struct FitProfile {
-    /// `Ok`, or `StoppedByCaller` with the values so far.
+    /// Status: `Ok`, or `StoppedByCaller` with the values so far.
     pub status: Status,
-    /// Values of the parameter.
+    /// Values of the scanned parameter.
     pub values: Vec<f64>,
-    /// Least loss at each, priors included; χ² without a robust loss; NaN where no fit was found.
+    /// Least loss at each value, priors included; χ² without a robust loss; NaN where no fit was found.
     pub loss: Vec<f64>,
-    /// Values of all parameters there, row after row; NaN where no fit was found.
+    /// Values of all parameters at each value of the scanned one, row after row; NaN where no fit was found.
     pub theta: Vec<f64>,
-    /// Loss of the fit.
+    /// Loss of the fit itself.
     pub best: f64,
     /// Rise of the loss that is one standard deviation: 1, or χ² over the degrees of freedom where the covariance is scaled by it.
     pub unit: f64,
 }
 
 impl FitProfile {
-    /// The interval in which the loss is below that of the fit plus `rise` units: 3.841 for 95 %, 1 for one standard deviation. The root
-    /// of the loss is taken for a line between two values. An end is infinite where the scan does not reach it.
+    /// Interval of the parameter in which the loss exceeds that of the fit by at most `rise` units: 3.841 for 95 %, 1
+    /// for one standard deviation. Between two values the root of the excess is interpolated linearly. An end is
+    /// infinite where the scan does not reach it.
     #[must_use]
     pub fn interval(&self, rise: f64) -> (f64, f64) {
         let above = |i: usize| (self.loss[i] - self.best).max(0.0).sqrt() - (rise * self.unit).sqrt();
@@ -77,8 +78,9 @@ impl FitProfile {
     }
 }
 
-/// The least loss at each value of one parameter. Values are taken from those of the fit outwards, each from the values of its neighbour.
-/// Arguments are those of the fit. A loss below that of the fit is told by a warning of the log: the fit was not the best one.
+/// Computes the least loss at each value of one parameter. Values are taken outwards from that of the fit, each
+/// starting from its neighbour. The other arguments are those of the fit. If a loss is below that of the fit, the log
+/// warns that the fit was not the best one.
 ///
 /// # Errors
 /// `Dimension`, `Argument` or `NotFinite` for the scanned parameter, those of [`fit`](crate::fit) but that the data need not tell the
@@ -167,14 +169,14 @@ pub fn fit_profile(
     Ok(profile)
 }
 
-/// End of a search at a value.
+/// Outcome of the search at one value.
 enum Least {
     Found(Box<State>),
     NoSolution,
     Stopped,
 }
 
-/// The state of least loss of the unknowns that are free; where none is, that at their values.
+/// The state of least loss over the free unknowns; where none is free, the state at their values.
 fn least(search: &Search<'_>, hooks: &mut Hooks<'_>) -> Result<Least> {
     if search.unknowns.free.is_empty() {
         let state = search.at(Vec::new())?;
@@ -216,7 +218,7 @@ impl Profiled<'_> {
         Ok(())
     }
 
-    /// The unknown that a number follows by its ties.
+    /// Index of the unknown that an unknown follows by its ties.
     fn leader(unknowns: &[Unknown], mut number: usize) -> usize {
         // Ties lead to earlier ones; others are refused elsewhere.
         while let Some(earlier) = unknowns[number].tied_to.filter(|earlier| *earlier < number) {
@@ -225,7 +227,7 @@ impl Profiled<'_> {
         number
     }
 
-    /// The unknowns with starts at values of all parameters.
+    /// The unknowns, with starts at the given values of all parameters.
     fn started(unknowns: &[Unknown], theta: &[f64]) -> Result<Vec<Unknown>> {
         let mut list = Vec::new();
         for (unknown, start) in unknowns.iter().zip(theta) {
@@ -249,7 +251,8 @@ impl Profiled<'_> {
         Ok(list)
     }
 
-    /// The unknowns from values of all parameters, the scanned one and all that go with it held at a value.
+    /// The unknowns with starts near the given values, and with the scanned one and all unknowns tied to it held at
+    /// `value`.
     fn held(&self, unknowns: &[Unknown], (near, value): (&[f64], f64)) -> Result<Vec<Unknown>> {
         let leader = Self::leader(unknowns, self.number);
         let factor = value / near[self.number];
@@ -276,7 +279,7 @@ impl Profiled<'_> {
         Ok(list)
     }
 
-    /// Loss by the prior of the held unknown.
+    /// Loss by the prior of the scanned parameter, which is held.
     fn known(&self, unknowns: &[Unknown], held: &[Unknown]) -> f64 {
         let leader = Self::leader(unknowns, self.number);
         let value = held[leader].start.unwrap_or(0.0);

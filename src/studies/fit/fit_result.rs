@@ -14,50 +14,50 @@ const CONTEXT: &str = "the result of a fit";
 /// Kind: tuned; measured on: not recorded.
 const FIT_POOR: f64 = 9.0;
 
-/// Result of a fit.
+/// Result of a fit: values, their covariance, and how well the data are explained.
 #[derive(Debug)]
 pub struct Fit {
     /// `Ok`; `StoppedMaxPoints` where the iterations did not suffice, `StoppedStalled` where no step lowers the loss any more,
     /// `StoppedByCaller`.
     pub status: Status,
-    /// Values of the parameters, in their order.
+    /// Fitted values of the parameters, in the order in which they were given.
     pub theta: Vec<f64>,
-    /// Their covariance, row after row; 0 for fixed ones and for those at a bound.
+    /// Covariance of the parameters, row after row; 0 for fixed parameters and for those at a bound.
     pub covariance: Vec<f64>,
     /// Whether each parameter lies at one of its bounds.
     pub at_bound: Vec<bool>,
-    /// Σ r² over the data and the priors.
+    /// Sum of squares Σ r² over data and priors.
     pub chi2: f64,
     /// Number of data and priors minus the number of free unknowns.
     pub degrees_of_freedom: i64,
-    /// The loss, Σ ρ(r); χ² without a robust one.
+    /// Loss Σ ρ(r) over data and priors; equal to χ² without a robust loss.
     pub loss: f64,
-    /// Number of data: two for a complex amplitude.
+    /// Number of data; a complex amplitude counts as two.
     pub data: usize,
     /// Number of free unknowns.
     pub free: usize,
-    /// Iterations from the start that led here.
+    /// Number of iterations from the start that led to this result.
     pub iterations: usize,
-    /// Starts that were searched from.
+    /// Number of starts from which the search was made.
     pub starts: usize,
-    /// Residuals in standard deviations, two for each datum, set after set; 0 for numbers that are no data.
+    /// Residuals in standard deviations, two for each datum, set after set; 0 for numbers that are not used as data.
     pub residuals: Vec<f64>,
-    /// Values of the model, likewise.
+    /// Predictions of the fitted model, two for each datum, set after set.
     pub values: Vec<f64>,
-    /// Largest over smallest eigenvalue of the matrix of the fit with unit diagonal.
+    /// Condition of the fit: largest over smallest eigenvalue of its matrix, scaled to unit diagonal.
     pub condition: f64,
     /// Largest estimated error by harmonics over the standard deviation of its datum; NaN where none was estimated.
     pub harmonic_error: f64,
     /// Whether each contact slips at any point of the data.
     pub slips: Vec<bool>,
-    /// Units that the data may have.
+    /// Suspicion that the data have other units than the model.
     pub suspicion: Suspicion,
-    /// The model with the values of the parameters that all data sets have.
+    /// The model with the fitted values of those parameters that all data sets share.
     pub model: Model,
 }
 
 impl Fit {
-    /// A sentence on a search that ended early; empty for one that found the least loss.
+    /// Sentence about a search that ended early; empty if it found the least loss.
     #[must_use]
     pub fn early_end(&self) -> &'static str {
         match self.status {
@@ -75,27 +75,27 @@ impl Fit {
         }
     }
 
-    /// Criterion of Akaike, χ² + 2k with k free unknowns, under known standard deviations.
+    /// Akaike's information criterion χ² + 2k with k free unknowns, for known standard deviations.
     #[must_use]
     pub fn aic(&self) -> f64 {
         self.chi2 + 2.0 * self.free as f64
     }
 
-    /// Criterion of Schwarz, χ² + k ln n.
+    /// Schwarz's information criterion χ² + k ln n with k free unknowns and n data.
     #[must_use]
     pub fn bic(&self) -> f64 {
         self.chi2 + self.free as f64 * (self.data as f64).ln()
     }
 }
 
-/// End of all searches.
+/// The best end over all searches.
 pub(super) struct Ended {
     pub(super) found: Found,
     pub(super) starts: usize,
     pub(super) stopped: bool,
 }
 
-/// Number of data, and of data and priors minus that of free unknowns.
+/// Number of data; and number of data and priors minus number of free unknowns.
 pub(super) fn sizes(search: &Search<'_>) -> (usize, i64) {
     let of_set = |set: &FitData<'_>| {
         let counted = |i| set.weights(i).iter().filter(|w| **w > 0.0).count();
@@ -112,7 +112,7 @@ pub(super) fn is_poor(search: &Search<'_>, state: &State) -> bool {
     state.cost > FIT_POOR * sizes(search).1.max(1) as f64
 }
 
-/// The result with its covariance.
+/// The result of the searches, with its covariance.
 ///
 /// # Errors
 /// `Singular` where the data do not tell the unknowns; those of the model; `OutOfMemory`, `StoppedByCaller`.

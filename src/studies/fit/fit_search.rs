@@ -34,21 +34,21 @@ const FIT_LINEAR_STEP: f64 = 1e-4;
 /// Kind: tuned; measured on: not recorded.
 const FIT_DEAR_STEP: f64 = 1e-5;
 
-/// Values of the unknowns with the loss there.
+/// Values of the free unknowns, with the loss and the residuals they lead to.
 #[derive(Clone, Debug)]
 pub(super) struct State {
-    /// Free unknowns in their scale.
+    /// Free unknowns, each in its scale.
     pub z: Vec<f64>,
     pub theta: Vec<f64>,
     pub predicted: Predicted,
     /// Residuals in standard deviations, two for each datum, then one for each prior.
     pub residuals: Vec<f64>,
-    /// Their derivatives by the free unknowns, row after row.
+    /// Derivatives of the residuals by the free unknowns, row after row.
     pub slopes: Vec<f64>,
     pub cost: f64,
 }
 
-/// End of a search.
+/// Outcome of one search.
 pub(super) struct Found {
     pub state: State,
     pub iterations: usize,
@@ -62,7 +62,7 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The state at values of the free unknowns; `None` where the model has no solution there.
+    /// The state at given values of the free unknowns; `None` where the model has no solution for some datum.
     ///
     /// # Errors
     /// Those of the predictor.
@@ -105,7 +105,7 @@ impl Search<'_> {
         Ok(state.cost.is_finite().then_some(state))
     }
 
-    /// The state at other values of the free unknowns, so near that the model is linear; its derivatives stay.
+    /// The state at other values of the free unknowns, so near that the model is linear; the derivatives are kept.
     fn along(&self, mut state: State, z: Vec<f64>) -> Result<State> {
         let theta = self.unknowns.theta(&z)?;
         let predicted = &mut state.predicted;
@@ -138,7 +138,7 @@ impl Search<'_> {
         Ok(found)
     }
 
-    /// The state with its loss.
+    /// The state, with its loss computed from the residuals.
     pub fn weighed(&self, mut state: State) -> State {
         // A prior is no outlier.
         let (data, priors) = state.residuals.split_at(self.predictor.rows());
@@ -168,7 +168,7 @@ impl Search<'_> {
         Ok((h, g))
     }
 
-    /// Whether each unknown may move: those at a bound stay where the gradient points out.
+    /// Whether each unknown may move; those at a bound may not where the gradient points out of it.
     pub fn moves(&self, z: &[f64], g: &[f64]) -> Result<Vec<bool>> {
         let mut moves = try_vec(z.len(), true, CONTEXT)?;
         for (k, free) in self.unknowns.free.iter().enumerate() {
@@ -177,7 +177,8 @@ impl Search<'_> {
         Ok(moves)
     }
 
-    /// The search from a state. `report` is told each iteration with the loss, and stops the search by `true`.
+    /// Searches from a state for the least loss. `report` is called with each iteration and its state; it stops the
+    /// search by returning `true`.
     ///
     /// # Errors
     /// Those of the predictor.

@@ -11,35 +11,36 @@ const CONTEXT: &str = "the unknowns of a fit";
 /// Scale in which an unknown is changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scale {
-    /// Logarithm for stiffnesses, friction, loads and factors that start above 0; the value itself otherwise.
+    /// Logarithm, for stiffnesses, friction, loads and factors that start above 0; otherwise the value itself.
     #[default]
     Automatic,
     /// The value itself.
     Linear,
-    /// Its logarithm: it stays above 0.
+    /// Logarithm of the value, which therefore stays above 0.
     Log,
 }
 
 /// A parameter as an unknown of a fit.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Unknown {
-    /// First value; `None`: that of the model.
+    /// Value at the start of the search; `None`: the value that the model has.
     pub start: Option<f64>,
-    /// Smallest value; equal to the largest one the parameter is fixed.
+    /// Smallest value allowed. If it equals the largest one, the parameter is fixed.
     pub lower: Option<f64>,
-    /// Largest value.
+    /// Largest value allowed.
     pub upper: Option<f64>,
-    /// Mean and standard deviation of what is known of it beside the data.
+    /// Prior knowledge of the parameter beside the data: mean and standard deviation.
     pub prior: Option<(f64, f64)>,
-    /// Scale in which it is changed.
+    /// Scale in which the parameter is changed.
     pub scale: Scale,
-    /// Number of an earlier parameter whose value it follows, in the ratio of their starts.
+    /// Index of an earlier parameter whose value this one follows, in the ratio of their starts.
     pub tied_to: Option<usize>,
-    /// Number of the data set that alone has it, as each test its residual state; `None`: all have it.
+    /// Index of the only data set that has this parameter, as each test has its own residual state; `None`: all sets
+    /// have it.
     pub data_set: Option<usize>,
 }
 
-/// A parameter in words.
+/// A parameter to be printed in words.
 pub(super) struct Named<'a>(pub &'a Parameter<'a>);
 
 impl fmt::Display for Named<'_> {
@@ -83,40 +84,43 @@ fn is_positive(parameter: &Parameter<'_>) -> bool {
     }
 }
 
-/// One parameter over the free unknowns.
+/// Dependence of one parameter on the free unknowns.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
-    /// Position of the free unknown; `None`: fixed.
+    /// Index of the free unknown; `None`: the parameter is fixed.
     free: Option<usize>,
-    /// Value over that of the free unknown; the value itself where it is fixed.
+    /// Value over that of the free unknown; for a fixed parameter the value itself.
     ratio: f64,
 }
 
-/// A free unknown.
+/// An unknown that the search may change.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Free {
-    /// Number of its parameter.
+    /// Index of its parameter.
     pub parameter: usize,
     pub is_log: bool,
-    /// Bounds in its scale.
+    /// Bounds of the unknown, in its scale.
     pub lower: f64,
     pub upper: f64,
-    /// Start in its scale.
+    /// Start of the unknown, in its scale.
     pub start: f64,
-    /// Mean and standard deviation of its value.
+    /// Mean and standard deviation of its prior, for the value itself.
     pub prior: Option<(f64, f64)>,
 }
 
-/// The unknowns of a fit, and the values of all parameters over them.
+/// The free unknowns of a fit, and the dependence of all parameters on them.
 #[derive(Debug)]
 pub(super) struct Unknowns {
     entries: Vec<Entry>,
     pub free: Vec<Free>,
-    /// The data set of each parameter that has one.
+    /// For each parameter, the data set that alone has it; `None`: all sets have it.
     pub scopes: Vec<Option<usize>>,
 }
 
 impl Unknowns {
+    /// Checks the `unknowns`, one for each of the `parameters`, and lists the free ones. A start that is not given is
+    /// the value in `model`.
+    ///
     /// # Errors
     /// `Dimension`, `Argument` or `NotFinite`, naming the unknown; `OutOfMemory`.
     pub fn new(
@@ -233,17 +237,17 @@ impl Unknowns {
         })
     }
 
-    /// Number of parameters.
+    /// Number of parameters of the fit.
     pub fn parameters(&self) -> usize {
         self.entries.len()
     }
 
-    /// Value of a free unknown.
+    /// Value of the k-th free unknown from its scaled number z.
     pub fn value(&self, k: usize, z: f64) -> f64 {
         if self.free[k].is_log { z.exp() } else { z }
     }
 
-    /// Values of all parameters.
+    /// Values of all parameters from the scaled free unknowns.
     pub fn theta(&self, z: &[f64]) -> Result<Vec<f64>> {
         let mut theta = try_vec(self.entries.len(), 0.0, CONTEXT)?;
         for (to, entry) in theta.iter_mut().zip(&self.entries) {
@@ -252,7 +256,8 @@ impl Unknowns {
         Ok(theta)
     }
 
-    /// The free unknown of a parameter, and the derivative of its value by it.
+    /// Index of the free unknown on which a parameter depends, and derivative of its value by the scaled unknown;
+    /// `None` for a fixed parameter.
     pub fn slope(&self, parameter: usize, z: &[f64]) -> Option<(usize, f64)> {
         let entry = self.entries[parameter];
         let k = entry.free?;

@@ -15,7 +15,7 @@ const FIT_LIMITS: [f64; 6] = [-1.15, 1.15, -2.3, 2.3, -4.6, 4.6];
 /// Kind: tuned; measured on: not recorded.
 const FIT_SPREAD: f64 = 1.15;
 
-/// Further points to begin from, the best ones of those that are tried.
+/// Further starts of the search: the best of those that are tried.
 ///
 /// # Errors
 /// Those of the predictor.
@@ -72,7 +72,7 @@ pub(super) fn further_starts(search: &Search<'_>, first: &State, poor: bool) -> 
     Ok(tried)
 }
 
-/// A number of the sequence of Halton (1960, doi:10.1007/BF01386213), within 0 .. 1.
+/// Element `number` of Halton's sequence (1960, doi:10.1007/BF01386213) in one dimension, within 0 .. 1.
 fn halton(number: usize, dimension: usize) -> f64 {
     /// Bases of the dimensions, the first primes.
     /// Kind: fixed.

@@ -22,7 +22,7 @@ const FIT_COMBINED: f64 = 1e-11;
 /// Kind: tuned; measured on: not recorded.
 const FIT_SHARE: f64 = 0.1;
 
-/// Largest over smallest eigenvalue of the matrix H with unit diagonal.
+/// Condition of the fit: largest over smallest eigenvalue of the matrix H, scaled to unit diagonal.
 ///
 /// # Errors
 /// `Singular` with a sentence where an unknown, or a combination of some, is not seen; `OutOfMemory`.

@@ -10,7 +10,7 @@ const CONTEXT: &str = "a step of a fit";
 /// Kind: rounding.
 const STEP_FLOOR: f64 = 1e-14;
 
-/// The step; 0 where `moves` is false.
+/// The step s of all unknowns; 0 where `moves` is false.
 ///
 /// # Errors
 /// `OutOfMemory`, `StoppedByCaller`, `Singular`.

@@ -12,6 +12,7 @@ use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
 use crate::hooks::Hooks;
 use crate::interrupt::Interrupt;
 use crate::model::Model;
+use crate::options::Range;
 use crate::options::{ForcedOptions, ModeChoice, ModeOptions, SolverOptions};
 use crate::results::stored::mode_branch::ModeField;
 use crate::results::{Branch, Special};
@@ -39,7 +40,7 @@ const FIT_SLIPS: f64 = 1e-9;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Predicted {
     pub values: Vec<f64>,
-    /// Derivatives by the parameters, one row for each number; empty unless asked for.
+    /// Derivatives by the parameters, one row for each number; empty unless requested.
     pub slopes: Vec<f64>,
     /// Largest estimated error by harmonics over the standard deviation of the datum; NaN where none was estimated.
     pub harmonic_error: f64,
@@ -47,18 +48,18 @@ pub(super) struct Predicted {
     pub slips: Vec<bool>,
 }
 
-/// A model whose parameters are fitted, and the data.
+/// The model whose parameters are fitted, and the data to predict.
 pub(super) struct Predictor<'a> {
     pub model: &'a Model,
     pub parameters: &'a [Parameter<'a>],
-    /// The data set of each parameter that only one has; empty where all have all.
+    /// For each parameter, the data set that alone has it; empty where all sets have all parameters.
     pub scopes: &'a [Option<usize>],
     pub data: &'a [FitData<'a>],
     pub solver: SolverOptions,
     pub interrupt: &'a Interrupt<'a>,
 }
 
-/// Where the numbers of one set go.
+/// Memory to which the predictions of one data set are written.
 struct Into<'a> {
     values: &'a mut [f64],
     slopes: &'a mut [f64],
@@ -66,17 +67,18 @@ struct Into<'a> {
     harmonic_error: &'a mut f64,
     slips: &'a mut [bool],
     shared: &'a mut SharedWork,
-    /// The parameters of the set, and their numbers among all.
+    /// The parameters of the set, and their indices among all.
     own: (&'a [Parameter<'a>], &'a [usize]),
 }
 
 impl Predictor<'_> {
-    /// Numbers of all data.
+    /// Number of predicted values over all data.
     pub fn rows(&self) -> usize {
         2 * self.data.iter().map(|set| set.x.len()).sum::<usize>()
     }
 
-    /// The data at values of the parameters; `None` where an analysis finds no solution for one of them.
+    /// Predicts the data at given values of the parameters; `None` where an analysis finds no solution for some
+    /// datum.
     ///
     /// # Errors
     /// Those of the model, of the analyses and of the derivatives; `StoppedByCaller`.
@@ -144,7 +146,7 @@ impl Predictor<'_> {
         Ok(Some(found))
     }
 
-    /// The model with the values of the parameters that all data sets have.
+    /// The model with the values of those parameters that all data sets share.
     ///
     /// # Errors
     /// Those of the model.
@@ -163,7 +165,8 @@ impl Predictor<'_> {
         design_with_bases(self.model, &parameters, &values)
     }
 
-    /// The common model with the values that one data set alone has; `None` where it has none.
+    /// The common model with the values of those parameters that only one data set has; `None` where the set has
+    /// none.
     fn model_of(&self, common: &Model, number: usize, theta: &[f64]) -> Result<Option<Model>> {
         let mut parameters = Vec::new();
         let mut values = Vec::new();
@@ -182,7 +185,7 @@ impl Predictor<'_> {
         design_with_bases(common, &parameters, &values).map(Some)
     }
 
-    /// The parameters that act in a data set, and their numbers.
+    /// The parameters that act in a data set, and their indices.
     fn parameters_of(&self, set: Option<usize>) -> Result<(Vec<Parameter<'_>>, Vec<usize>)> {
         let (mut parameters, mut numbers) = (Vec::new(), Vec::new());
         for (k, parameter) in self.parameters.iter().enumerate() {
@@ -244,7 +247,7 @@ impl Predictor<'_> {
             None => special.amplitude,
         };
         let mut equations = Equations {
-            range: (omega_start, omega_stop),
+            range: Range::new(omega_start, omega_stop),
             at: None,
         };
         for i in 0..set.x.len() {
@@ -311,7 +314,7 @@ impl Predictor<'_> {
         Ok(true)
     }
 
-    /// The complex amplitude at one frequency; the number of its point.
+    /// Predicts the complex amplitude at one frequency; returns the index of its point.
     fn complex_row<'b>(
         &'b self,
         model: &Model,
@@ -361,7 +364,8 @@ impl Predictor<'_> {
         Ok(Some(point))
     }
 
-    /// Factor of a derivative; `None` where there is none: at an onset of slip and in a fold the search goes on without it.
+    /// Factor of a derivative by the k-th parameter. `None` where the derivative does not exist: at an onset of slip
+    /// and in a fold the search goes on without it.
     fn usable(&self, k: usize, reason: Reason, theta: &[f64]) -> Result<Option<f64>> {
         match reason {
             Reason::Exists => Ok(Some(self.parameters[k].relative_at(theta[k]))),
@@ -374,7 +378,7 @@ impl Predictor<'_> {
         }
     }
 
-    /// Derivatives of a result at a point.
+    /// Writes the derivatives of a result at a point.
     fn rows_of(
         &self,
         model: &Model,
@@ -445,7 +449,7 @@ impl Predictor<'_> {
     }
 }
 
-/// Notes the error of a point and the contacts that slip there.
+/// Notes the estimated error of a point, and the contacts that slip at it.
 fn note(branch: &Branch, point: usize, (set, i): (&FitData<'_>, usize), into: &mut Into<'_>) {
     if let Some(shares) = branch.slip_fraction_at(point) {
         for (slips, share) in into.slips.iter_mut().zip(shares) {

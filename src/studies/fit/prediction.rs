@@ -23,17 +23,17 @@ const PREDICTION_ROUNDING: f64 = 1e-14;
 /// Predicted numbers, two for each x of the set.
 #[derive(Clone, Debug)]
 pub struct Prediction {
-    /// The numbers at the values of the parameters: as [`FitData::value`] has them.
+    /// Predicted numbers at the given values of the parameters, arranged as [`FitData::value`].
     pub values: Vec<f64>,
-    /// Their standard deviations by the delta method.
+    /// Standard deviations of the predictions, by the delta method.
     pub sigma: Vec<f64>,
-    /// Shift of their means by the second order; NaN where a step of one standard deviation has no solution. Where it is not small
-    /// against the standard deviation, the delta method is not enough.
+    /// Shift of the predicted means by second-order terms; NaN where a step of one standard deviation has no
+    /// solution. Where the shift is not small against the standard deviation, the delta method does not suffice.
     pub shift: Vec<f64>,
 }
 
-/// Predicts the numbers of `wanted`, whose values and standard deviations have no effect, at the values `theta` of the parameters with
-/// their covariance.
+/// Predicts the numbers of `wanted` at the values `theta` of the parameters with their covariance. The values and
+/// standard deviations of `wanted` have no effect.
 ///
 /// # Errors
 /// `Dimension` or `NotFinite` for theta and covariance, those of the set, of the analyses and of the derivatives; `NoConvergence` where

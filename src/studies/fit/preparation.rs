@@ -36,8 +36,8 @@ pub(super) fn check(
     Ok(())
 }
 
-/// The numbers of the data by a model of the fit's own, so that bases of waves are shared by all its designs, and the caller's model is
-/// left as it is. `scopes` are those of the unknowns.
+/// Predictor of the data, on a model of the fit's own, so that all its designs share the bases of waves, and the
+/// caller's model is not changed. `scopes` are the data sets of the unknowns.
 pub(super) fn predictor<'a>(
     own: &'a Model,
     (parameters, scopes): (&'a [Parameter<'a>], &'a [Option<usize>]),
@@ -55,7 +55,7 @@ pub(super) fn predictor<'a>(
     }
 }
 
-/// The options of the solver with the tolerance of the data.
+/// The solver's options with the tolerance that the data need.
 fn of_fit(solver: &SolverOptions, data: &[FitData<'_>]) -> SolverOptions {
     SolverOptions {
         tolerance: tolerance_of(data, solver.tolerance),
@@ -63,7 +63,8 @@ fn of_fit(solver: &SolverOptions, data: &[FitData<'_>]) -> SolverOptions {
     }
 }
 
-/// The tolerance with which errors by harmonics stay below a share of the standard deviations; 0 stays 0.
+/// The tolerance with which errors by harmonics stay below a share of the standard deviations; a given tolerance of 0
+/// stays 0.
 fn tolerance_of(data: &[FitData<'_>], given: f64) -> f64 {
     let mut tolerance = given;
     for set in data.iter().filter(|_| given > 0.0) {

@@ -19,17 +19,17 @@ const FIT_ROBUST: f64 = 1.345;
 /// Kind: tuned; measured on: not recorded.
 const FIT_TELLS: f64 = 9.0;
 
-/// End of the searches of a fit.
+/// Outcome of all searches of a fit.
 pub(super) enum Searched {
-    /// The best end, and the values of the parameters from which the search on all data began.
+    /// The best end; and the values of the parameters from which the search on all data began.
     Ended(Box<Ended>, Vec<f64>),
-    /// Stopped while a share of the data was searched: the result on that share.
+    /// The caller stopped the search on a share of the data; with the result on that share.
     StoppedEarly(Box<Fit>),
-    /// The model has no solution for all data at the start.
+    /// The model has no solution for some datum at the start.
     NoSolution,
 }
 
-/// The searches from the start of the unknowns, and from others where that fits poorly.
+/// Searches from the given start, and from others where that fits poorly.
 ///
 /// # Errors
 /// Those of the predictor.
@@ -53,7 +53,7 @@ pub(super) fn searched(search: &Search<'_>, hooks: &mut Hooks<'_>) -> Result<Sea
     Ok(Searched::Ended(Box::new(ended), first.theta))
 }
 
-/// The best end of the searches from all starts.
+/// The best end over the searches from all starts.
 fn best_of(search: &Search<'_>, first: &State, (hooks, mut stopped): (&mut Hooks<'_>, bool)) -> Result<Ended> {
     let mut starts = 1;
     let mut best = search.from(first.clone(), &mut |i, state| {
@@ -88,8 +88,9 @@ fn best_of(search: &Search<'_>, first: &State, (hooks, mut stopped): (&mut Hooks
     })
 }
 
-/// The search from where a robust one ends. Beyond a fold of the model the solution nearest to a datum lies on another branch; such data
-/// pull least squares away from the truth, and are outliers to a robust loss until the fold has moved.
+/// Searches from where a search with a robust loss ends. Beyond a fold of the model, the solution nearest to a datum
+/// lies on another branch. Such data pull least squares away from the truth; to a robust loss they are outliers until
+/// the fold has moved.
 fn by_robust_loss(search: &Search<'_>, first: &State, report: &mut dyn FnMut(usize, &State) -> bool) -> Result<Found> {
     let options = FitOptions {
         loss: Loss::Huber(FIT_ROBUST),

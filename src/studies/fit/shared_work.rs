@@ -11,7 +11,7 @@ const CONTEXT: &str = "the shared work of a fit";
 pub(super) struct SharedWork {
     /// Matrices that factors multiply.
     pub matrices: WaveMatrices,
-    /// Modes by the response degree of freedom, whose row is kept with them.
+    /// Modes of the waves for each response degree of freedom, whose row is kept with them.
     waves: Vec<(Option<usize>, SharedWaves)>,
 }
 

@@ -18,10 +18,10 @@ const UNIT_DISTANCE: f64 = 0.5;
 /// Kind: tuned; measured on: not recorded.
 const UNIT_AGREEMENT: (f64, f64) = (0.4, 0.2);
 
-/// A suspected unit.
+/// Suspicion that data and model have different units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Suspicion {
-    /// None.
+    /// No suspicion.
     #[default]
     None,
     /// The responses of the data are this factor times those of the model.
@@ -56,7 +56,8 @@ impl Suspicion {
     }
 }
 
-/// Shape of the responses: the factor of the model that fits the data best, and the agreement, 0 to 1, then.
+/// Comparison of the responses' shapes: the factor on the model that fits the data best, and the agreement with this
+/// factor, 0 to 1.
 fn shape(data: &[FitData<'_>], values: &[f64]) -> (f64, f64) {
     let (mut product, mut of_model, mut of_data) = (0.0, 0.0, 0.0);
     let mut row = 0;
@@ -81,7 +82,7 @@ fn shape(data: &[FitData<'_>], values: &[f64]) -> (f64, f64) {
     (product / of_model, product.max(0.0).powi(2) / (of_model * of_data))
 }
 
-/// The unit that is suspected at values of the parameters, where the data do not fit.
+/// The suspected unit at given values of the parameters, where the data do not fit.
 ///
 /// # Errors
 /// Those of the predictor.

@@ -20,7 +20,7 @@ const FIT_THINNED_MOST: usize = 8;
 /// Kind: tuned; measured on: not recorded.
 const FIT_THINNED_STEP: f64 = 0.3;
 
-/// Data of a set in memory of their own.
+/// Data of a set, copied to memory of their own.
 struct Share {
     x: Vec<f64>,
     value: Vec<Complex64>,
@@ -48,28 +48,29 @@ impl Share {
     }
 }
 
-/// Numbers of the points of a set that its share has.
+/// Indices of the points of a set that belong to its share.
 fn kept(set: &FitData<'_>, stride: usize) -> impl Iterator<Item = usize> + use<> {
     let stride = if is_thinned(set) { stride } else { 1 };
     (0..set.x.len()).skip((stride - 1) / 2).step_by(stride)
 }
 
-/// Whether a set is dense enough to be thinned; peaks are few and dear.
+/// Whether a set is dense enough to be thinned. Sets of peaks are not: they are small, and each peak is expensive.
 fn is_thinned(set: &FitData<'_>) -> bool {
     matches!(set.kind, DataKind::Response | DataKind::Amplitude) && set.x.len() > FIT_THINNED_MOST
 }
 
-/// Where the search on all data begins.
+/// Start of the search on all data.
 pub(super) enum Start {
-    /// At the given start: there are few data, or a share of them is not explained.
+    /// The given start, since there are few data, or the search did not explain its share of them.
     Given,
-    /// At these unknowns, from which the search is short.
+    /// Free unknowns found on a share of the data, from which the search is short.
     Nearer(Vec<f64>),
-    /// Nowhere: the caller stopped the first search. Numbers are those of its share of the data; residuals and values are NaN elsewhere.
+    /// No start: the caller stopped the search on a share of the data. The numbers are those of the share; residuals
+    /// and values are NaN elsewhere.
     Stopped(Box<Fit>),
 }
 
-/// The start of the search on all data.
+/// Finds the start of the search on all data.
 ///
 /// # Errors
 /// Those of the predictor, and of a result.
@@ -144,7 +145,7 @@ pub(super) fn start(
     Ok(Start::Given)
 }
 
-/// Numbers of a share at the places of all data, two for each datum; NaN elsewhere.
+/// Numbers of a share of the data, placed among all data, two for each datum; NaN elsewhere.
 fn spread(numbers: &[f64], data: &[FitData<'_>], stride: usize) -> Result<Vec<f64>> {
     let rows = 2 * data.iter().map(|set| set.x.len()).sum::<usize>();
     let mut all = try_vec(rows, f64::NAN, CONTEXT)?;

@@ -2,19 +2,19 @@
 
 use std::f64::consts::TAU;
 
-/// Phase over the time of a run-up.
+/// Phase and frequency of the forces over the time of a run-up.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chirp {
     start: f64,
     stop: f64,
-    /// Signed dω/dt.
+    /// Rate dω/dt, with its sign.
     rate: f64,
     duration: f64,
     last_phase: f64,
 }
 
 impl Chirp {
-    /// From one angular frequency to another, both > 0, at |dω/dt| > 0.
+    /// A chirp between two angular frequencies, both > 0, at |dω/dt| > 0.
     pub fn new(start: f64, stop: f64, rate: f64) -> Self {
         let rate = if stop < start { -rate } else { rate };
         let duration = (stop - start) / rate;
@@ -31,7 +31,7 @@ impl Chirp {
         self.duration
     }
 
-    /// Turns within it.
+    /// Number of turns of the forces within the chirp.
     pub fn turns(&self) -> f64 {
         self.last_phase / TAU
     }
@@ -45,7 +45,7 @@ impl Chirp {
         }
     }
 
-    /// Its change per time.
+    /// Rate of the frequency at a time; 0 before and after the chirp.
     pub fn rate(&self, time: f64) -> f64 {
         if (0.0..self.duration).contains(&time) {
             self.rate
@@ -54,7 +54,7 @@ impl Chirp {
         }
     }
 
-    /// Phase at a time, 0 at its begin.
+    /// Phase at a time; 0 at the beginning of the chirp.
     pub fn phase(&self, time: f64) -> f64 {
         if time <= 0.0 {
             self.start * time
@@ -65,7 +65,7 @@ impl Chirp {
         }
     }
 
-    /// Time of a phase.
+    /// Time at which the forces have a phase.
     pub fn time(&self, phase: f64) -> f64 {
         if phase <= 0.0 {
             phase / self.start

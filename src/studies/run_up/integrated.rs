@@ -68,19 +68,20 @@ const CONTEXT: &str = "the integrated part of a run-up";
 
 /// Result of the integration in time.
 pub(super) struct Integrated {
-    /// Turns that the last lead and what follows it took; 0: they differ from the slow flow so that all turns were needed, which are too
-    /// many, and the rest is the slow flow with that difference as its error.
+    /// Number of turns of the last lead and of the integration after it. 0: all turns would be needed, since the
+    /// leads differ from the slow flow, but these are too many; the result is then the slow flow with that difference
+    /// as its error.
     pub turns: usize,
     /// The largest displacement, its time and its frequency.
     pub largest: f64,
     pub largest_time: f64,
     pub largest_omega: f64,
-    /// Relative error of it.
+    /// Relative error of the largest displacement.
     pub error: f64,
 }
 
-/// Integrates in time around the largest displacement of a slow flow, and puts the amplitudes there into its turns; `None` where the
-/// work that is allowed does not suffice, or no steady motion is found.
+/// Integrates in time around the largest displacement of a slow flow, and replaces the amplitudes of these turns;
+/// `None` where the allowed work does not suffice, or no steady motion is found.
 #[inline(never)]
 pub(super) fn integrate(
     model: &Model,
@@ -117,7 +118,8 @@ pub(super) fn integrate(
     leads.around(seen)
 }
 
-/// Rate at which a small change of the amplitude dies away: the decay, or the slope of the amplitude times it, whichever is less.
+/// Rate at which a small change of the amplitude decays: the decay rate δ of the oscillator or, with the amplitude a,
+/// the slope d(aδ)/da, whichever is less.
 fn decay(table: &ModeTable, at: &Place) -> f64 {
     let here = table.oscillator(at).decay();
     let mut below = *at;
@@ -132,27 +134,27 @@ fn decay(table: &ModeTable, at: &Place) -> f64 {
     here.min(slope.max(0.1 * here))
 }
 
-/// Sweeps with leads.
+/// Sweeps in time, each with a lead: turns before the ones of interest in which the start is forgotten.
 struct Leads<'a> {
     /// The model with the forces of the run-up.
     model: Model,
-    /// The same for leads: its sliders have the places of the begin of the run-up where they rest there.
+    /// The model for leads: sliders that do not move at the beginning of the run-up have the places of that time.
     placed: Option<Model>,
     options: &'a RunUpOptions,
     chirp: &'a Chirp,
     dof: usize,
-    /// Rate at which perturbations die away, in each turn.
+    /// Rate at which perturbations decay in each turn.
     decays: &'a [f64],
     /// Largest displacement of each turn by the slow flow.
     amplitudes: &'a [f64],
-    /// Checks of the interrupt that are left.
+    /// Number of checks of the interrupt that are left.
     checks: u64,
     /// The first turn of the run-up, for the places of its sliders.
     first: Option<FrequencySweep>,
     interrupt: &'a Interrupt<'a>,
 }
 
-/// Turns that are of interest, and their sweep from the first turn of a lead on.
+/// The turns of interest, and their sweep from the first turn of a lead on.
 struct Swept {
     from: usize,
     sweep: FrequencySweep,
@@ -206,8 +208,9 @@ impl Leads<'_> {
         }))
     }
 
-    /// Leads to turns, each twice as long as the one before, until the changes of their largest displacements are small: the last lead,
-    /// and what it may leave. With two leads alone, the distance to the slow flow stands for a third one.
+    /// Sweeps with leads to the `wanted` turns, each lead twice as long as the one before, until the largest
+    /// displacement changes little. Returns the last sweep and its possible error. With two leads alone, the
+    /// difference from the slow flow replaces a third one.
     fn leads(&mut self, wanted: (usize, usize), flow: f64) -> Result<Option<(Swept, f64)>> {
         let mut exponent = RUN_UP_LEAD;
         let mut before: [Option<f64>; 2] = [None; 2];
@@ -242,8 +245,8 @@ impl Leads<'_> {
         }
     }
 
-    /// Integrates the first turn of the run-up, and gives the places of the sliders that rest there to the model of leads; whether
-    /// it was found.
+    /// Integrates the first turn of the run-up, and places the model's sliders that do not move in it; returns
+    /// whether the turn was found.
     fn know_begin(&mut self) -> Result<bool> {
         if self.first.is_none() {
             let Some(first) = self.sweep(0, (0, 0))? else {
@@ -261,8 +264,9 @@ impl Leads<'_> {
         Ok(true)
     }
 
-    /// Sum of the distances by which sliders that do not move in both directions in a lead, or in the steady motion at its begin, are not
-    /// where they are at the begin of the run-up; `None` where one of them is elsewhere, or may have been moved before.
+    /// Sum of the distances by which sliders are not where they are at the beginning of the run-up, over those that
+    /// do not move in both directions in a lead, or in the steady motion at its beginning; `None` where one of them
+    /// is elsewhere, or may have been moved before.
     fn history(&self, from: usize, lead: &FrequencySweep, largest: f64) -> Option<f64> {
         let Some(first) = &self.first else { return Some(0.0) };
         let mut distance = 0.0;
@@ -282,7 +286,7 @@ impl Leads<'_> {
         (!is_larger || lead.resting.iter().all(Option::is_none)).then_some(distance)
     }
 
-    /// The turn from which perturbations decay by an exponent before a turn.
+    /// The turn from which perturbations decay by the given exponent until `turn`.
     fn begin(&self, turn: usize, exponent: f64) -> usize {
         let (mut k, mut decayed) = (turn, 0.0);
         while k > 0 && decayed < exponent {
@@ -293,8 +297,8 @@ impl Leads<'_> {
         k
     }
 
-    /// The sweep from a turn on, and the largest displacement in the turns that are wanted; `None` where it is not found within the
-    /// work that is allowed.
+    /// The sweep from a turn on, and the largest displacement in the turns `first` to `last`; `None` where it is not
+    /// found within the allowed work.
     fn sweep(&mut self, from: usize, (first, last): (usize, usize)) -> Result<Option<Swept>> {
         if last + 1 - from > self.options.integrated_turns {
             return Ok(None);

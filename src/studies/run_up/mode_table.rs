@@ -31,13 +31,13 @@ const MODE_TABLE_HALVINGS: usize = 6;
 /// The mode as an oscillator at one amplitude: q″ + c q′ + (ω₀² + i·loss + ic(W − ω₀)) q = force.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Oscillator {
-    /// ω₀²
+    /// Squared natural frequency ω₀².
     pub square: f64,
-    /// Loss factor times stiffness of what does not follow the frequency: 2Dω₀² − cω₀ of friction.
+    /// Rate-independent loss term, loss factor times stiffness: 2Dω₀² − cω₀ of friction.
     pub loss: f64,
-    /// c, the viscous damping over the modal mass.
+    /// Viscous damping c over the modal mass.
     pub viscous: f64,
-    /// u₁ᴴ F of the mass-normalised fundamental u₁.
+    /// Modal force u₁ᴴ F with the mass-normalised fundamental u₁.
     pub force: Complex64,
 }
 
@@ -47,7 +47,7 @@ impl Oscillator {
         Complex64::new(self.square - omega * omega, self.viscous * omega + self.loss)
     }
 
-    /// Rate at which its vibration dies away, Dω₀.
+    /// Decay rate Dω₀ of the free vibration.
     pub fn decay(&self) -> f64 {
         0.5 * (self.viscous + self.loss / self.square.max(f64::MIN_POSITIVE).sqrt())
     }
@@ -55,15 +55,16 @@ impl Oscillator {
 
 /// A mode over the logarithm of its modal amplitude.
 pub(crate) struct ModeTable {
-    /// Harmonics with the mean.
+    /// Number of harmonics, the mean included.
     pub harmonics: usize,
-    /// Relative motions of contacts that are kept.
+    /// Number of relative motions of contacts that are kept.
     rows: usize,
-    /// ln a of each node.
+    /// Logarithm ln a of the modal amplitude at each node.
     ln: Vec<f64>,
     numbers: Vec<[f64; NUMBERS]>,
     slopes: Vec<[f64; NUMBERS]>,
-    /// Motions of each node: observed displacement, then the rows, `harmonics` coefficients each; all but the mean over a.
+    /// Motions at each node: observed displacement, then relative motions, `harmonics` coefficients each; all but the
+    /// mean are divided by a.
     motions: Vec<Complex64>,
     /// Whether the first node lies in the linear range.
     is_linear_below: bool,
@@ -71,23 +72,23 @@ pub(crate) struct ModeTable {
     turns: bool,
 }
 
-/// Where an amplitude lies: the node below it, and the share of the next one.
+/// Position of an amplitude in the table: index of the node below it, and share of the way to the next one.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Place {
     node: usize,
     share: f64,
-    /// Modal amplitude.
+    /// The modal amplitude itself.
     amplitude: f64,
 }
 
 impl Place {
-    /// The modal amplitude.
+    /// The modal amplitude at this position.
     pub fn amplitude(&self) -> f64 {
         self.amplitude
     }
 }
 
-/// One node before it is stored.
+/// Data of one node before it is stored.
 struct Node {
     log10: f64,
     amplitude: f64,
@@ -96,7 +97,7 @@ struct Node {
     motions: Vec<Complex64>,
 }
 
-/// Makes nodes.
+/// Computes nodes of the table.
 struct Maker<'a> {
     refinement: Refinement<'a>,
     model: &'a Model,
@@ -110,7 +111,7 @@ struct Maker<'a> {
 }
 
 impl ModeTable {
-    /// The table of a mode under the forces of `load`: the displacement of `dof` and the motions of `elements` are kept.
+    /// The table of a mode under the forces of `load`, with the displacement of `dof` and the motions of `elements`.
     ///
     /// # Errors
     /// `Argument` where less than two amplitudes rise along the mode; `OutOfMemory`; those of callbacks; `StoppedByCaller`.
@@ -243,7 +244,7 @@ impl ModeTable {
         self.ln.iter().map(|ln| ln.exp())
     }
 
-    /// Course of the mode beyond the amplitude of the last node.
+    /// Sentence on the course of the mode beyond the last node.
     pub fn what_goes_further(&self) -> &'static str {
         if self.turns {
             "a mode whose amplitude has a fold there does not describe larger motions: integrate them with a time sweep"
@@ -252,7 +253,7 @@ impl ModeTable {
         }
     }
 
-    /// Finds an amplitude from the place found last on.
+    /// Finds the position of an amplitude, searching from the one found last.
     ///
     /// # Errors
     /// `Argument` beyond the amplitudes of the mode.
@@ -298,7 +299,7 @@ impl ModeTable {
         Ok(())
     }
 
-    /// The oscillator at a place, by monotone cubics.
+    /// The oscillator at a position of the table, by monotone cubics.
     pub fn oscillator(&self, at: &Place) -> Oscillator {
         let (k, s) = (at.node, at.share);
         let h = self.ln[k + 1] - self.ln[k];
@@ -320,7 +321,8 @@ impl ModeTable {
         }
     }
 
-    /// Coefficient h of a motion, 0 the observed one, then the rows.
+    /// Coefficient h of a motion at a position of the table; motion 0 is the observed one, the relative motions
+    /// follow.
     pub fn coefficient(&self, at: &Place, motion: usize, h: usize) -> Complex64 {
         let stride = (1 + self.rows) * self.harmonics;
         let i = at.node * stride + motion * self.harmonics + h;
@@ -328,7 +330,7 @@ impl ModeTable {
         (self.motions[i] * (1.0 - at.share) + self.motions[i + stride] * at.share) * unit
     }
 
-    /// Value and derivative by the phase of a motion at the phase whose powers are given.
+    /// Value of a motion and its derivative by the phase; `powers` are the powers of e^(i·phase).
     pub fn value(&self, at: &Place, motion: usize, powers: &[Complex64]) -> (f64, f64) {
         let (mut x, mut slope) = (0.0, 0.0);
         for (h, power) in powers.iter().enumerate() {
@@ -341,7 +343,7 @@ impl ModeTable {
 }
 
 impl Maker<'_> {
-    /// The node at an amplitude between points k and k + 1; `None` where the mode is not found there.
+    /// The node at an amplitude between points k and k + 1; `None` where the mode is not found at this amplitude.
     fn node(&mut self, k: usize, log10: f64) -> Result<Option<Node>> {
         self.interrupt.check()?;
         let Some(state) = self.refinement.state_at(k, log10)? else {
@@ -399,7 +401,7 @@ impl Maker<'_> {
         ]
     }
 
-    /// Appends `last` and the nodes before it that its distance from the last one of the list needs.
+    /// Appends `last` to the nodes, after those between it and the last one of the list that interpolation needs.
     fn between(&mut self, k: usize, nodes: &mut Vec<Node>, last: Node) -> Result<()> {
         let mut open: Vec<(Node, usize)> = Vec::new();
         try_push(&mut open, (last, 0), CONTEXT)?;

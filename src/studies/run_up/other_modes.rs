@@ -17,27 +17,28 @@ const OTHER_MODES_MOST: usize = 24;
 
 const CONTEXT: &str = "the other modes";
 
-/// One mode under the forces.
+/// One of the other modes, under the forces.
 struct Other {
     square: f64,
-    /// φᴴ C φ
+    /// Viscous damping φᴴ C φ, with unit modal mass.
     viscous: f64,
-    /// φᴴ F
+    /// Modal force φᴴ F.
     force: Complex64,
 }
 
-/// The other modes: motions of what is observed and of contacts, as in the table of a mode.
+/// The other modes: their observed displacements and relative motions at contacts, arranged as in a mode's table.
 pub(crate) struct OtherModes {
     modes: Vec<Other>,
     motions: usize,
-    /// `motions` for each mode.
+    /// Motions of each mode, `motions` numbers a mode.
     shapes: Vec<Complex64>,
-    /// Mφ of the mode of the slow flow itself, in independent degrees of freedom, and its φᴴ F; `None` if it is not among the lowest.
+    /// Product Mφ of the slow flow's own mode, over the independent degrees of freedom, and its modal force φᴴ F;
+    /// `None` if it is not among the lowest modes.
     pub own: Option<(Vec<Complex64>, Complex64)>,
 }
 
 impl OtherModes {
-    /// Those beside the mode of a number, from 0 by rising frequency with stuck contacts.
+    /// The modes beside mode `number`, counted from 0 by rising frequency with stuck contacts.
     ///
     /// # Errors
     /// Those of the natural modes.
@@ -84,7 +85,7 @@ impl OtherModes {
         Ok(found)
     }
 
-    /// None.
+    /// An empty set of modes.
     pub fn none() -> Self {
         Self {
             modes: Vec::new(),
@@ -94,13 +95,13 @@ impl OtherModes {
         }
     }
 
-    /// Whether there are none.
+    /// Whether the set of other modes is empty.
     pub fn is_empty(&self) -> bool {
         self.modes.is_empty()
     }
 
-    /// Complex amplitude of a motion, 0 the observed one, at a frequency of the forces that changes at a rate, and its part of the
-    /// first order in the rate: with Z = ω² − W² + icW, X = F/Z, it is −((2iW + c) X′ + iW′X)/Z.
+    /// Complex amplitude of a motion (0: the observed one) at a force frequency W that changes at a rate; and its
+    /// part of first order in the rate. With Z = ω² − W² + icW and X = F/Z, this part is −((2iW + c) X′ + iW′X)/Z.
     pub fn motion(&self, motion: usize, omega: f64, rate: f64) -> (Complex64, Complex64) {
         let (mut whole, mut change) = (Complex64::ZERO, Complex64::ZERO);
         for (mode, shape) in self.modes.iter().zip(self.shapes.chunks_exact(self.motions)) {
@@ -116,7 +117,7 @@ impl OtherModes {
     }
 }
 
-/// A x
+/// Product A x of a sparse matrix and a vector.
 fn product(a: &Csc, x: &[Complex64]) -> Result<Vec<Complex64>> {
     let mut y = try_vec(x.len(), Complex64::ZERO, CONTEXT)?;
     for (j, x) in x.iter().enumerate() {

@@ -36,7 +36,7 @@ const SLIDER_MEMORY_STEADY: f64 = 1e-9;
 
 const CONTEXT: &str = "the memory of sliders";
 
-/// The defect of a slow flow over the time, straight between equidistant times.
+/// The defect force of a slow flow over time, piecewise linear between equidistant times.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Defect {
     length: f64,
@@ -44,7 +44,7 @@ pub(super) struct Defect {
 }
 
 impl Defect {
-    /// The value at a time.
+    /// Defect force at a time.
     pub fn at(&self, time: f64) -> Complex64 {
         let Some(last) = self.values.len().checked_sub(1) else {
             return Complex64::ZERO;
@@ -60,11 +60,12 @@ impl Defect {
 /// Kind: fixed.
 const PASSED: usize = 3;
 
-/// Evaluates the memory along paths.
+/// Evaluates the memory of sliders along slow flows.
 pub(super) struct SliderMemory<'a> {
     table: &'a ModeTable,
     others: &'a OtherModes,
-    /// Laws with a slider, and the number of their first motion in the table.
+    /// Laws with sliders, each with the index of its first motion in the table and the number of its motions, at most
+    /// 2.
     sliders: Vec<(&'a dyn EventLaw, usize, usize)>,
     powers: Vec<Complex64>,
     places: Vec<[Place; PASSED]>,
@@ -73,7 +74,7 @@ pub(super) struct SliderMemory<'a> {
 }
 
 impl<'a> SliderMemory<'a> {
-    /// That of the elements whose motions the table has.
+    /// The memory of the elements whose motions the table has.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -98,12 +99,12 @@ impl<'a> SliderMemory<'a> {
         })
     }
 
-    /// Whether no contact remembers anything.
+    /// Whether no contact has a memory.
     pub fn is_empty(&self) -> bool {
         self.sliders.is_empty()
     }
 
-    /// The defect along a path.
+    /// The defect force along a slow flow.
     ///
     /// # Errors
     /// `Argument` beyond the amplitudes of the mode; `OutOfMemory`; `StoppedByCaller`.
@@ -122,7 +123,7 @@ impl<'a> SliderMemory<'a> {
         Ok(defect)
     }
 
-    /// The defect at a time.
+    /// The defect force at one time of a slow flow.
     fn at(&mut self, time: f64, path: &SlowPath, chirp: &Chirp) -> Result<Complex64> {
         let table = self.table;
         let n = SLIDER_MEMORY_SAMPLES;
@@ -169,7 +170,8 @@ impl<'a> SliderMemory<'a> {
         Ok(defect)
     }
 
-    /// Passes the motions through all sliders: fundamentals of the differences of their forces over the last turn.
+    /// Passes the three motions through all sliders. Leaves the fundamentals of the differences of their forces over
+    /// the last turn.
     fn pass(&mut self, (least, most): (f64, f64), (omega, rate): (f64, f64)) {
         let (table, n) = (self.table, SLIDER_MEMORY_SAMPLES);
         self.forces.fill(Complex64::ZERO);
@@ -239,13 +241,14 @@ impl<'a> SliderMemory<'a> {
     }
 }
 
-/// No motion.
+/// No motion and no rate.
 const REST: Instant = Instant {
     motion: [0.0; 2],
     rate: [0.0; 2],
 };
 
-/// Where the first motion turns between two times, by the cubics through motions and rates.
+/// The instant between two others at which the first motion turns, by the cubics through motions and rates; `None` if
+/// it does not turn.
 fn turning_point(a: &Instant, b: &Instant, length: f64) -> Option<Instant> {
     if (a.rate[0] < 0.0) == (b.rate[0] < 0.0) {
         return None;

@@ -39,30 +39,30 @@ const SLOW_FLOW_HALVINGS: usize = 200;
 
 const CONTEXT: &str = "the slow flow";
 
-/// One turn of the forces in a run-up.
+/// Data of one turn of the forces in a run-up.
 #[derive(Clone, Copy, Debug)]
 pub struct RunUpTurn {
-    /// Time at its begin.
+    /// Time at the beginning of the turn.
     pub time: f64,
-    /// Angular frequency at its begin.
+    /// Angular frequency of the forces at the beginning of the turn.
     pub omega: f64,
-    /// Largest displacement within it.
+    /// Largest displacement within the turn.
     pub amplitude: f64,
-    /// Modal amplitude at its begin.
+    /// Modal amplitude at the beginning of the turn.
     pub modal_amplitude: f64,
 }
 
-/// The largest displacement, and its turns.
+/// The largest displacement of a slow flow, with its time, and all its turns.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Observed {
     pub turns: Vec<RunUpTurn>,
     pub largest: f64,
     pub largest_time: f64,
-    /// Displacement of the other modes then that is of the first order in the rate.
+    /// Displacement of the other modes at that time, in the part of first order in the rate.
     pub beside: f64,
 }
 
-/// The slow flow of a mode.
+/// The slow flow of a mode under the forces of a run-up.
 pub(super) struct SlowFlow<'a> {
     pub table: &'a ModeTable,
     pub others: &'a OtherModes,
@@ -71,7 +71,7 @@ pub(super) struct SlowFlow<'a> {
 }
 
 impl SlowFlow<'_> {
-    /// The steady amplitude at the first frequency, the least one.
+    /// Steady complex amplitude at the first frequency; the smallest where there are several.
     ///
     /// # Errors
     /// `Argument` where the mode has no such amplitude.
@@ -79,8 +79,8 @@ impl SlowFlow<'_> {
         steady(self.table, self.chirp.omega(0.0))
     }
 
-    /// Follows the flow from the steady motion at the first frequency on, and observes it. Defect and q″ are those of the solution
-    /// before.
+    /// Follows the slow flow from the steady motion at the first frequency, and observes the displacement. Defect
+    /// force and q″ are taken from the solution before.
     ///
     /// # Errors
     /// `Argument` beyond the amplitudes of the mode; `OutOfMemory`; `StoppedByCaller`.
@@ -135,7 +135,7 @@ impl SlowFlow<'_> {
         Ok((path, seen))
     }
 
-    /// One step of the classical method of Runge and Kutta.
+    /// One step of the classical Runge–Kutta method.
     fn step(&self, (begin, end): (f64, f64), rate: f64, q: Complex64, known: &mut Known<'_>) -> Result<Complex64> {
         let h = end - begin;
         let middle = begin + 0.5 * h;
@@ -159,7 +159,7 @@ impl SlowFlow<'_> {
     }
 }
 
-/// The root of p² + 2h p + Z = 0 next to zero, from 2h.
+/// Root of p² + 2h p + Z = 0 next to zero, where `damping` is 2h and `stiffness` is Z.
 pub(crate) fn slow_root(damping: Complex64, stiffness: Complex64) -> Complex64 {
     let half = damping * 0.5;
     let mut root = (half * half - stiffness).sqrt();
@@ -169,14 +169,14 @@ pub(crate) fn slow_root(damping: Complex64, stiffness: Complex64) -> Complex64 {
     -stiffness / (half + root)
 }
 
-/// Defect and path of the solution before.
+/// Defect force and path of the solution before.
 struct Known<'a> {
     defect: &'a Defect,
     before: &'a SlowPath,
     place: Place,
 }
 
-/// The steady complex amplitude at a frequency, the least one.
+/// Steady complex amplitude at a frequency; the smallest where there are several.
 ///
 /// # Errors
 /// `Argument` where the mode has no such amplitude.
@@ -226,12 +226,12 @@ pub(crate) fn steady(table: &ModeTable, omega: f64) -> Result<Complex64> {
     )
 }
 
-/// Watches the displacement.
+/// Watches the displacement for its largest value.
 struct Watch<'a> {
     table: &'a ModeTable,
     place: Place,
     powers: Vec<Complex64>,
-    /// Time, displacement of the last two samples.
+    /// Times and displacements of the last two samples.
     last: [(f64, f64); 2],
     samples: usize,
 }

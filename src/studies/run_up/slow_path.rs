@@ -3,7 +3,7 @@
 use crate::error::{Result, try_copy, try_push};
 use num_complex::Complex64;
 
-/// Values and rates at times that rise, cubic between them, steady before the first one.
+/// Amplitudes and their rates at rising times: cubic between them, steady before the first one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SlowPath {
     times: Vec<f64>,
@@ -11,13 +11,13 @@ pub(super) struct SlowPath {
 }
 
 impl SlowPath {
-    /// Appends amplitude and rate at a time behind the last one.
+    /// Appends amplitude and rate at a time after the last one.
     pub fn push(&mut self, time: f64, state: [Complex64; 2]) -> Result<()> {
         try_push(&mut self.times, time, "the slow flow")?;
         try_push(&mut self.states, state, "the slow flow")
     }
 
-    /// A copy.
+    /// A copy that returns an error if memory is short.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -64,7 +64,8 @@ impl SlowPath {
 }
 
 impl SlowPath {
-    /// First and second derivative at a time, the second one from differences of the first; 0 before the first time and behind the last.
+    /// First and second derivative of the amplitude at a time, the second one from differences of the first; 0 before
+    /// the first time and after the last.
     pub fn motion(&self, time: f64) -> (Complex64, Complex64) {
         let n = self.times.len();
         let after = self.times.partition_point(|t| *t <= time);
@@ -89,7 +90,7 @@ impl SlowPath {
     }
 }
 
-/// The cubic through values and rates at the ends of an interval of a length.
+/// The cubic at share `s` of an interval, through values and rates at its ends.
 pub(super) fn cubic(s: f64, length: f64, a: &[Complex64; 2], b: &[Complex64; 2]) -> Complex64 {
     let r = 1.0 - s;
     a[0] * (r * r * (1.0 + 2.0 * s))

@@ -40,7 +40,7 @@ const LIFE_JUMP: f64 = 0.15;
 /// Kind: cap.
 const LIFE_HALVINGS: usize = 40;
 
-/// Change of a contact, or of the amplitude.
+/// Kind of an event: a change of a contact, of the motion, or of the amplitude.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LifeEventKind {
     /// A contact begins to slip.
@@ -53,66 +53,65 @@ pub enum LifeEventKind {
     Pressed,
     /// The amplitude passes the limit.
     Limit,
-    /// The motion that was followed ends, as at a fold, or where a peak meets a minimum: amplitude and works jump, and the life
-    /// goes on with
-    /// the motion that is found there.
+    /// The motion that was followed ends, as at a fold, or where a peak meets a minimum. Amplitude and works jump,
+    /// and the life continues with the motion that is found.
     Jumps,
 }
 
-/// An event of a life.
+/// An event in the life of a machine.
 #[derive(Clone, Copy, Debug)]
 pub struct LifeEvent {
-    /// Cycles.
+    /// Number of cycles at the event.
     pub cycles: f64,
-    /// Its kind.
+    /// Kind of the event.
     pub kind: LifeEventKind,
-    /// Number of the contact in the model; `None` for the amplitude.
+    /// Index of the contact in the model; `None` for an event of the amplitude.
     pub contact: Option<usize>,
 }
 
-/// State at a wanted number of cycles, contacts in the order of [`LifeOptions::wear`].
+/// State at a requested number of cycles, with the contacts in the order of [`LifeOptions::wear`].
 #[derive(Clone, Debug)]
 pub struct LifePoint {
-    /// Cycles.
+    /// Number of cycles of the life so far.
     pub cycles: f64,
-    /// Worn depths.
+    /// Worn depth of each contact.
     pub depths: Vec<f64>,
-    /// Normal loads at rest.
+    /// Static normal load of each contact.
     pub loads: Vec<f64>,
-    /// Works per cycle.
+    /// Work of friction of each contact per cycle.
     pub works: Vec<f64>,
-    /// Amplitude.
+    /// Amplitude of the vibration.
     pub amplitude: f64,
-    /// Its angular frequency.
+    /// Angular frequency of the vibration.
     pub omega: f64,
 }
 
-/// A life.
+/// Vibration over the life of a machine.
 #[derive(Clone, Debug)]
 pub struct Life {
-    /// States at the wanted cycles, as many as were reached.
+    /// States at the requested cycles, as many as were reached.
     pub points: Vec<LifePoint>,
-    /// Events in their order.
+    /// Events of the life, by rising cycles.
     pub events: Vec<LifeEvent>,
-    /// Cycles that were reached.
+    /// Number of cycles that were reached.
     pub reached: f64,
     /// Largest amplitude and the cycles at which it occurs.
     pub largest: (f64, f64),
-    /// Amplitude at the beginning and at the end.
+    /// Amplitude at the beginning and at the end of the life.
     pub ends: (f64, f64),
-    /// Steps that were taken.
+    /// Number of steps that were taken.
     pub steps: usize,
-    /// Steady vibrations that were solved.
+    /// Number of steady vibrations that were solved.
     pub solutions: usize,
     /// `Ok`, or why the life ended early: `StoppedByCaller`, `StoppedMaxPoints`, `StoppedStepTooSmall`.
     pub status: Status,
-    /// Sentence of another status than `Ok`.
+    /// Reason of a status that is not `Ok`.
     pub reason: Option<Error>,
     depths: Vec<f64>,
 }
 
 impl Life {
-    /// Depths where the life ended, with which another one may go on.
+    /// Worn depths at the end, with which another life may continue.
     #[must_use]
     pub fn depths(&self) -> &[f64] {
         &self.depths
@@ -282,7 +281,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Whether another step may be tried at n cycles; counts those in turn that were refused.
+    /// Refuses a further step at n cycles if there are too many steps, or too many refused ones in a row.
     fn may_go_on(&self, refusals: &mut Refusals, n: f64, end: f64) -> Result<()> {
         if self.found.steps >= self.options.most_steps {
             return Err(Error::new(
@@ -299,7 +298,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// A length whose step of the second order has about the wanted error.
+    /// Length of the first step: a step of second order has about the requested error.
     fn first_length(&self, at: &LifeState, rest: f64) -> f64 {
         let speed = at.size_of(&self.states, &at.worn.rate);
         if speed > 0.0 {
@@ -309,20 +308,20 @@ impl Walk<'_> {
         }
     }
 
-    /// Cycles within which a jump is located.
+    /// Number of cycles within which a jump is located.
     fn length_of_jump(&self, at: &LifeState) -> f64 {
         let speed = at.size_of(&self.states, &at.worn.rate);
         (LIFE_JUMP * self.options.tolerance / speed.max(f64::MIN_POSITIVE)).max(4.0 * f64::EPSILON * at.n)
     }
 
-    /// The end of a refused step that is no longer than a jump: rates cannot change so quickly within one motion.
+    /// The end of a refused step that is no longer than the width of a jump: within one motion rates cannot change so
+    /// quickly.
     fn too_short(&self, at: &LifeState, length: f64) -> Option<(f64, Doubt)> {
         (length <= self.length_of_jump(at)).then_some((at.n + length, Doubt::None))
     }
 
-    /// The state at cycles at which the motion is another one, so near that rates are constant up to there. Where a still shorter
-    /// step shows
-    /// that the motion goes on, there is no event.
+    /// The state just after the motion has jumped, so near that rates are constant up to it. Where a still shorter
+    /// step shows that the motion continues, there is no event.
     fn jump(&mut self, at: &LifeState, n: f64, hooks: &mut Hooks<'_>) -> Result<LifeState> {
         let mut depths = try_copy(&at.depths, CONTEXT)?;
         for (h, rate) in depths.iter_mut().zip(&at.worn.rate) {
@@ -340,7 +339,7 @@ impl Walk<'_> {
         Ok(step.to)
     }
 
-    /// Records a jump where two states next to each other are not the same motion.
+    /// Records a jump where two neighbouring states do not belong to one motion.
     fn tell_jump(&mut self, at: &LifeState, to: &LifeState) -> Result<()> {
         if at.goes_on_to(to, (&self.states, self.options.tolerance))? {
             return Ok(());
@@ -359,14 +358,16 @@ impl Walk<'_> {
         try_push(&mut self.found.events, event, CONTEXT)
     }
 
-    /// Cycles before and after an event that a straight step may go: twice these, it errs by the share of the tolerance.
+    /// Number of cycles before and after an event that a straight step may span: over twice this length, its error is
+    /// the allowed share of the tolerance.
     fn length_across(&self, at: &LifeState, length: f64) -> Result<f64> {
         let bent = at.size_of(&self.states, &at.second()?);
         Ok((0.5 * LIFE_EVENT * self.options.tolerance / bent).sqrt().min(length))
     }
 
-    /// Cycles at which a contact changes its state within a step, if one does: along the path of the states before it, on which the work of
-    /// a contact that slips, or a load, is followed to 0 by Newton's method within a bracket.
+    /// Number of cycles at which a contact changes its state within a step, if one does. The work of a slipping
+    /// contact, or its load, is followed to 0 along the path of the states before, by Newton's method within a
+    /// bracket.
     fn event(
         &mut self,
         at: &LifeState,
@@ -410,7 +411,8 @@ impl Walk<'_> {
         Ok(Some(high))
     }
 
-    /// The cycles at which a contact that is to change its state does so, by Newton's method from a probe at which its value is not 0.
+    /// Estimate of the cycles at which a contact changes its state, by Newton's method from a probe at which the
+    /// value is not 0 yet.
     fn estimate(&self, at: &LifeState, probe: &LifeState) -> Option<f64> {
         let (a, b) = (&at.worn, &probe.worn);
         let count = a.slips.len();
@@ -436,7 +438,7 @@ impl Walk<'_> {
         first
     }
 
-    /// The state a short distance beyond an event; the events are recorded.
+    /// The state a short distance after an event, whose changes are recorded.
     fn across(&mut self, at: &LifeState, (event, beyond): (f64, f64), hooks: &mut Hooks<'_>) -> Result<LifeState> {
         let end = self.options.cycles.last().copied().unwrap_or(at.n);
         let mut length = ((event - at.n).max(0.0) + beyond).min(end - at.n);
@@ -469,7 +471,7 @@ impl Walk<'_> {
         ))
     }
 
-    /// Records what has changed at an event.
+    /// Records the changes of contacts between two states as events.
     fn tell(&mut self, a: &WornState, b: &WornState, cycles: f64) -> Result<()> {
         for (j, wear) in self.options.wear.iter().enumerate() {
             let kind = match (a.lost[j], b.lost[j], a.slips[j], b.slips[j]) {
@@ -489,7 +491,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Records the states within a step.
+    /// Records the states at the requested cycles within a step.
     fn record(&mut self, step: &LifeStep, hooks: &mut Hooks<'_>) -> Result<()> {
         self.found.steps += 1;
         while let Some(&n) = self.options.cycles.get(self.found.points.len()) {
@@ -550,7 +552,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// The state at wanted cycles, of a step or of its end.
+    /// Records the state at n cycles, by interpolation within a step, or at its end.
     fn push(&mut self, at: &LifeState, step: Option<&LifeStep>, n: f64) -> Result<()> {
         let within = step.filter(|_| n.to_bits() != at.n.to_bits());
         let depths = match within {
@@ -585,7 +587,7 @@ impl Walk<'_> {
     }
 }
 
-/// Cycles within a step at which the cubic of its amplitude has its ends and turning points.
+/// Numbers of cycles of a step's two ends and of the turning points of its amplitude, by the cubic.
 fn turning(step: &LifeStep) -> impl Iterator<Item = f64> {
     let (from, delta) = (step.from.n, step.length());
     let (a0, a1) = (step.from.worn.amplitude, step.to.worn.amplitude);

@@ -181,9 +181,8 @@ impl LifeOptions<'_> {
     }
 }
 
-/// The first pivot of a symmetric matrix without exchange, and its value, that is negative beyond rounding; a pivot of zero whose
-/// row is not
-/// zero counts as negative. None where the matrix is positive semidefinite.
+/// The first pivot, with its value, of a symmetric matrix (without exchange) that is negative beyond rounding; a zero
+/// pivot with a nonzero row counts as negative. `None` where the matrix is positive semidefinite.
 fn negative_pivot(matrix: &[f64], n: usize) -> Result<Option<(usize, f64)>> {
     let mut a = try_copy(matrix, "the static stiffness of a life")?;
     for j in 0..n {

@@ -4,16 +4,17 @@
 /// Kind: cap; halves of a life down to the length of a jump are 60.
 pub(crate) const LIFE_TRIES: usize = 200;
 
-/// Steps in turn that were refused.
+/// Count of refused steps in a row.
 #[derive(Default)]
 pub(crate) struct Refusals {
-    /// Number of steps that were taken when the last one was tried.
+    /// Number of steps taken when the last one was tried.
     taken: usize,
     count: usize,
 }
 
 impl Refusals {
-    /// Counts a step that is tried after `taken` ones; whether those refused since are more than may be.
+    /// Counts a step that is tried after `taken` steps; returns whether too many have been refused since the last one
+    /// was taken.
     pub fn are_too_many(&mut self, taken: usize) -> bool {
         self.count = if taken == self.taken { self.count + 1 } else { 0 };
         self.taken = taken;
@@ -21,19 +22,19 @@ impl Refusals {
     }
 }
 
-/// How it is tried whether the motion ends, or a step was only long.
+/// State of the question whether the motion ends, or a step was only too long.
 #[derive(Clone, Copy)]
 pub(crate) enum Doubt {
-    /// A step is tried over half of the way.
+    /// A step over half of the way is tried.
     Half,
-    /// It went on: a step is tried over the rest.
+    /// The motion continued over the half: a step over the rest is tried.
     Rest,
-    /// The motion ends, and halves lead to the place.
+    /// The motion ends; halving leads to the position.
     None,
 }
 
 impl Doubt {
-    /// The doubt where a step is broken once more.
+    /// The state after another broken step.
     pub fn again(self) -> Self {
         match self {
             Self::Half => Self::Half,
@@ -41,7 +42,7 @@ impl Doubt {
         }
     }
 
-    /// The doubt where a step was too long for its error: no other step goes as far as the one that was tried.
+    /// The state after a step with too large an error: no other step goes as far as the one that was tried.
     pub fn too_long(doubt: Option<(f64, Self)>) -> Option<(f64, Self)> {
         doubt.map(|(other, doubt)| match doubt {
             Self::Rest => (other, Self::Half),
@@ -49,7 +50,8 @@ impl Doubt {
         })
     }
 
-    /// The doubt about a motion at cycles `other` after a step to `n`.
+    /// The state of the question about a motion at cycles `other`, after a step to `n`; `None` where the step reached
+    /// them.
     pub fn after(self, other: f64, n: f64) -> Option<(f64, Self)> {
         let doubt = match self {
             Self::Half => Self::Rest,
@@ -59,7 +61,8 @@ impl Doubt {
     }
 }
 
-/// Length of a step: a step of the last hundredth of the rest alone would be lost on rounding.
+/// Length of the next step. The last hundredth of the rest is not left as a step of its own, which rounding would
+/// spoil.
 pub(crate) fn length_of(delta: f64, rest: f64, is_bounded: bool) -> f64 {
     if is_bounded {
         delta
@@ -70,8 +73,9 @@ pub(crate) fn length_of(delta: f64, rest: f64, is_bounded: bool) -> f64 {
     }
 }
 
-/// Factor of the length of the next step from the error over the tolerance, and from the ratio of this length to the one before with the
-/// error there: the constant of the error goes on to change as it did (Gustafsson 1994, doi:10.1145/198429.198437).
+/// Factor for the length of the next step. It follows from the error over the tolerance (`share`), and from the ratio
+/// of this length to the one before with the error there: the constant of the error continues to change as it did
+/// (Gustafsson 1994, doi:10.1145/198429.198437).
 pub(crate) fn growth(share: f64, power: i32, before: Option<(f64, f64)>) -> f64 {
     if share <= 0.0 {
         return 4.0;

@@ -22,22 +22,22 @@ const LIVES_TO_CLOSE: usize = 60;
 /// Kind: rounding.
 const FACTOR_ACCURACY: f64 = 1e-7;
 
-/// The best loads for a life.
+/// Loads with which the largest amplitude over a life is least.
 #[derive(Clone, Copy, Debug)]
 pub struct BestLoad {
     /// Factor on the loads of the contacts that wear.
     pub factor: f64,
-    /// Largest amplitude over the life with it.
+    /// Largest amplitude over the life with these loads.
     pub amplitude: f64,
-    /// Amplitude when new.
+    /// Amplitude of the new machine with these loads.
     pub new: f64,
-    /// Amplitude at the end.
+    /// Amplitude at the end of the life with these loads.
     pub worn: f64,
-    /// Lives that were followed.
+    /// Number of lives that were followed.
     pub lives: usize,
 }
 
-/// A life with a factor on its loads.
+/// A life that was followed with a factor on its loads.
 #[derive(Clone, Copy)]
 struct Tried {
     factor: f64,
@@ -46,14 +46,14 @@ struct Tried {
 }
 
 impl Tried {
-    /// Above 0 where the new machine vibrates more than the worn one.
+    /// Amplitude of the new machine minus that of the worn one.
     fn difference(&self) -> f64 {
         self.ends.0 - self.ends.1
     }
 }
 
-/// Searches within a range of factors on the loads of the contacts that wear, as the model has them, for the one with which the largest
-/// amplitude over the life is least. It is the lowest of the minima that nine lives over the range show.
+/// Searches for the factor on the loads of the contacts that wear, within a range, with which the largest amplitude
+/// over the life is least. It is the lowest of the minima that nine lives over the range show.
 ///
 /// # Errors
 /// `Argument` for the range; those of [`life`]; `NoConvergence` for a life that has no peak at its start or ends early;
@@ -105,7 +105,8 @@ pub fn best_load_for_life(
     })
 }
 
-/// The error of a search that lacks a life. A status of a partial result is none here, where nothing is kept.
+/// The error of a search for which a life is missing. The status of a partial result does not apply, since none is
+/// kept.
 fn without_life(e: Error, factor: f64) -> Error {
     if matches!(
         e.status,
@@ -158,7 +159,8 @@ impl Search<'_> {
         })
     }
 
-    /// The factor at which the new and the worn machine vibrate alike: regula falsi, with the end that stays halved in weight.
+    /// The factor at which the new and the worn machine vibrate alike, by regula falsi that halves the weight of an
+    /// end that stays.
     fn corner(&mut self, mut a: Tried, mut b: Tried, hooks: &mut Hooks<'_>) -> Result<Tried> {
         let (mut fa, mut fb) = (a.difference(), b.difference());
         for _ in 0..LIVES_TO_CLOSE {
@@ -178,7 +180,7 @@ impl Search<'_> {
         Ok(if a.largest < b.largest { a } else { b })
     }
 
-    /// Golden sections of the largest amplitude, as long as they may find less than a known one.
+    /// Minimum of the largest amplitude by golden sections, as long as they may find less than a known one.
     fn smooth(&mut self, (mut low, mut high): (f64, f64), known: Tried, hooks: &mut Hooks<'_>) -> Result<Tried> {
         let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
         let mut found = known;

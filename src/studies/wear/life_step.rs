@@ -60,18 +60,18 @@ const LIFE_STEP_TERMS: usize = 8;
 /// Kind: cap.
 const LIFE_STEP_PARTS: usize = 64;
 
-/// A state at a number of cycles.
+/// State of the machine after a number of cycles.
 #[derive(Clone, Debug)]
 pub(crate) struct LifeState {
-    /// Cycles.
+    /// Number n of cycles.
     pub n: f64,
-    /// Depths.
+    /// Worn depths of the contacts.
     pub depths: Vec<f64>,
-    /// The vibration.
+    /// Steady vibration with these depths.
     pub worn: WornState,
 }
 
-/// Product of a column-major matrix of the order of `x` with `x`.
+/// Product of a column-major square matrix with `x`.
 fn times(matrix: &[f64], x: &[f64]) -> Result<Vec<f64>> {
     let mut product = try_vec(x.len(), 0.0, CONTEXT)?;
     crate::linalg::add_product(1.0, matrix, x, &mut product);
@@ -79,12 +79,13 @@ fn times(matrix: &[f64], x: &[f64]) -> Result<Vec<f64>> {
 }
 
 impl LifeState {
-    /// The vibration and its depths, from which one nearby goes on.
+    /// The vibration and the depths of this state, as a start for one nearby.
     pub fn near(&self) -> (&WornState, &[f64]) {
         (&self.worn, &self.depths)
     }
 
-    /// Whether another state is the continuation of this one: its amplitude and works follow from the derivatives at both.
+    /// Whether another state continues the motion of this one: its amplitude and works follow from the derivatives at
+    /// both states.
     pub fn goes_on_to(&self, other: &Self, (states, tolerance): (&WornStates<'_>, f64)) -> Result<bool> {
         let mut change = try_copy(&other.depths, CONTEXT)?;
         for (x, before) in change.iter_mut().zip(&self.depths) {
@@ -96,7 +97,7 @@ impl LifeState {
         Ok(left <= LIFE_STEP_BREAK_FLOOR * tolerance.sqrt() || left <= LIFE_STEP_BREAK * whole)
     }
 
-    /// f′ = J f.
+    /// Second derivative f′ = J f of the depths by the cycles.
     pub fn second(&self) -> Result<Vec<f64>> {
         times(&self.worn.rate_by_depth, &self.worn.rate)
     }
@@ -106,7 +107,8 @@ impl LifeState {
         crate::linalg::dot(&self.worn.amplitude_by_depth, &self.worn.rate)
     }
 
-    /// Size of a change of the depths: of the loads relative to their unit, or of the amplitude relative to itself.
+    /// Size of a change of the depths, by its effect: change of the loads over their unit, or relative change of the
+    /// amplitude.
     pub fn size_of(&self, states: &WornStates<'_>, change: &[f64]) -> f64 {
         let unit = states.load_unit().max(f64::MIN_POSITIVE);
         let mut size = 0.0_f64;
@@ -119,34 +121,35 @@ impl LifeState {
     }
 }
 
-/// A step between two states.
+/// A step of the life between two states.
 #[derive(Clone, Debug)]
 pub(crate) struct LifeStep {
-    /// The begin.
+    /// State at the beginning of the step.
     pub from: LifeState,
-    /// The end.
+    /// State at the end of the step.
     pub to: LifeState,
     second: [Vec<f64>; 2],
-    /// h⁗ of the cubic of the rates, and a‴ of that of the amplitude.
+    /// Fourth derivative h⁗ of the depths, by the cubic of the rates; and third derivative a‴ of the amplitude, by
+    /// its cubic.
     fourth: Vec<f64>,
     third: f64,
 }
 
-/// Outcome of a step.
+/// Outcome of an attempt to make a step.
 #[allow(clippy::large_enum_variant)]
 pub(crate) enum Taken {
-    /// It is solved, or a contact changes its state within it.
+    /// The step is solved, or a contact changes its state within it.
     Step(LifeStep),
-    /// Its error over the tolerance is so large that it was not solved.
+    /// The step was not solved, because its error over the tolerance is as large as given.
     Refused(f64),
-    /// Its ends are not the same motion.
+    /// Both ends do not belong to one motion.
     Broken,
-    /// Its equations were not solved.
+    /// The equations of the step were not solved.
     Failed,
 }
 
 impl LifeStep {
-    /// Steps from a state by `delta`; `last` is the step before.
+    /// Tries a step from a state by `delta` cycles; `last` is the step before.
     ///
     /// # Errors
     /// Those of the states.
@@ -234,7 +237,7 @@ impl LifeStep {
         })
     }
 
-    /// Its length.
+    /// Length of the step in cycles.
     pub fn length(&self) -> f64 {
         self.to.n - self.from.n
     }
@@ -244,7 +247,7 @@ impl LifeStep {
         error_of(states, &self.to, ((&self.fourth, self.third), self.length()), last)
     }
 
-    /// Depths at n cycles, by the integral of the cubic of the rates.
+    /// Depths at n cycles, as integrals of the cubic of the rates.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -269,7 +272,7 @@ impl LifeStep {
         Ok(rates)
     }
 
-    /// Coefficients of s, s² and s³ of the rate of a contact.
+    /// Coefficients of s, s² and s³ in the rate of contact j, where s is the share of the step.
     fn cubic(&self, j: usize) -> [f64; 3] {
         let delta = self.length();
         let (f0, f1) = (self.from.worn.rate[j], self.to.worn.rate[j]);
@@ -277,7 +280,7 @@ impl LifeStep {
         [g0, 3.0 * (f1 - f0) - 2.0 * g0 - g1, 2.0 * (f0 - f1) + g0 + g1]
     }
 
-    /// Amplitude at n cycles, by the cubic through values and slopes of both ends.
+    /// Amplitude at n cycles, by the cubic through values and slopes at both ends.
     pub fn amplitude(&self, n: f64) -> f64 {
         let [from, to] = [&self.from, &self.to];
         self.through(
@@ -287,7 +290,7 @@ impl LifeStep {
         )
     }
 
-    /// Angular frequency at n cycles, likewise.
+    /// Angular frequency at n cycles, by the cubic through values and slopes at both ends.
     pub fn omega(&self, n: f64) -> f64 {
         let [from, to] = [&self.from.worn, &self.to.worn];
         let slope = |worn: &WornState| crate::linalg::dot(&worn.omega_by_depth, &worn.rate);
@@ -300,7 +303,7 @@ impl LifeStep {
         a0 + s * (g0 + s * (3.0 * (a1 - a0) - 2.0 * g0 - g1 + s * (2.0 * (a0 - a1) + g0 + g1)))
     }
 
-    /// A step so short that rates are constant over it.
+    /// Makes a step so short that rates are constant over it.
     pub fn short(from: &LifeState, to: LifeState) -> Result<Self> {
         let zero = || try_vec(from.depths.len(), 0.0, CONTEXT);
         Ok(Self {
@@ -313,7 +316,7 @@ impl LifeStep {
     }
 }
 
-/// h⁗ of the cubic of the rates between two states, from f′ of both.
+/// Fourth derivative h⁗ of the depths between two states, from f′ at both by the cubic of the rates.
 fn fourth((from, to): (&LifeState, &LifeState), second: [&[f64]; 2]) -> Result<Vec<f64>> {
     let delta = to.n - from.n;
     let mut fourth = try_vec(from.depths.len(), 0.0, CONTEXT)?;
@@ -324,7 +327,7 @@ fn fourth((from, to): (&LifeState, &LifeState), second: [&[f64]; 2]) -> Result<V
     Ok(fourth)
 }
 
-/// The estimated error of a step to a state, and the power of the length with which it grows.
+/// Estimated error of a step, and the power of its length with which the error grows.
 fn error_of(
     states: &WornStates<'_>,
     to: &LifeState,
@@ -352,7 +355,7 @@ fn error_of(
     Ok((to.size_of(states, &error).max(amplitude), power))
 }
 
-/// a‴ of the cubic of the amplitude between two states.
+/// Third derivative a‴ of the amplitude between two states, by its cubic.
 fn third((from, to): (&LifeState, &LifeState)) -> f64 {
     let delta = to.n - from.n;
     let (a0, a1) = (from.worn.amplitude, to.worn.amplitude);
@@ -437,8 +440,8 @@ fn corrected(
     Ok(Some(moved))
 }
 
-/// Depths at a distance from a state that a step has reached, as they follow without a change of a contact's state: the Taylor series of
-/// f′ = J f, where J goes on along the line through its values at both ends of that step.
+/// Depths at a distance `delta` from the end of the last step, provided that no contact changes its state: the Taylor
+/// series of f′ = J f, where J continues along the line through its values at both ends of that step.
 pub(crate) fn ahead((at, last): (&LifeState, Option<&LifeStep>), delta: f64) -> Result<Vec<f64>> {
     let jacobian = &at.worn.rate_by_depth;
     let mut slope = try_vec(jacobian.len(), 0.0, CONTEXT)?;
@@ -485,7 +488,7 @@ pub(crate) fn ahead((at, last): (&LifeState, Option<&LifeStep>), delta: f64) -> 
     Ok(depths)
 }
 
-/// The largest sum of the moduli of a row.
+/// Largest sum of the moduli of a row.
 fn largest_row(matrix: &[f64], count: usize) -> Result<f64> {
     let mut sums = try_vec(count, 0.0, CONTEXT)?;
     for column in matrix.chunks_exact(count.max(1)) {

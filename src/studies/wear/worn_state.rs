@@ -23,41 +23,42 @@ const PEAK_WINDOWS: [f64; 3] = [0.02, 0.1, 0.4];
 /// A state of a life: worn depths and the vibration with them.
 #[derive(Clone, Debug)]
 pub(crate) struct WornState {
-    /// Loads of the contacts that wear, at least 0 where a law has no gap.
+    /// Normal loads of the contacts that wear, at least 0 where a law has no gap.
     pub loads: Vec<f64>,
-    /// Work per cycle of each.
+    /// Work of friction of each contact per cycle.
     pub works: Vec<f64>,
-    /// f = h′, depth per cycle.
+    /// Rates of wear f = h′: depth of each contact per cycle.
     pub rate: Vec<f64>,
-    /// ∂f/∂h, column-major.
+    /// Derivatives ∂f/∂h of the rates by the depths, column-major.
     pub rate_by_depth: Vec<f64>,
-    /// ∂E/∂h, column-major.
+    /// Derivatives ∂E/∂h of the works by the depths, column-major.
     pub work_by_depth: Vec<f64>,
-    /// Amplitude; the largest one of several duties.
+    /// Amplitude of the vibration; the largest one over several duties.
     pub amplitude: f64,
-    /// Its derivatives by the depths.
+    /// Derivatives of the amplitude by the depths.
     pub amplitude_by_depth: Vec<f64>,
-    /// Its angular frequency.
+    /// Angular frequency of the vibration with this amplitude.
     pub omega: f64,
     /// Derivatives of a peak's frequency by the depths.
     pub omega_by_depth: Vec<f64>,
-    /// Whether each contact slips.
+    /// Whether each contact slips in the cycle.
     pub slips: Vec<bool>,
     /// Whether each contact has lost its load.
     pub lost: Vec<bool>,
-    /// Harmonics of the vibration of each duty, from which those of a state nearby are sought; empty ones give no guess.
+    /// Harmonics of the vibration of each duty, as guesses for states nearby; empty ones give no guess.
     motions: Rc<Vec<Vec<Complex64>>>,
 }
 
 impl WornState {
-    /// Whether a contact slips or is lost in the one state and not in the other.
+    /// Whether a contact slips, or has lost its load, in one of two states and not in the other.
     pub fn changes(&self, other: &Self) -> bool {
         self.slips != other.slips || self.lost != other.lost
     }
 
-    /// Parts of amplitude and works by which another state, at a change of the depths, is not the continuation of this one: what the mean
-    /// of the derivatives at both ends leaves of each change, of the third order in the change of the depths, and the larger of the change
-    /// itself and of the mean of the moduli. Both are relative to the amplitude, or to the largest work, at least `work`.
+    /// Shares of the changes of amplitude and works that are unexplained if another state, at a change of the depths,
+    /// continued this one. The mean of the derivatives at both ends leaves a part of third order in the change of the
+    /// depths; it is compared with the larger of the change itself and the mean of the moduli. Both are relative to
+    /// the amplitude, or to the largest work, at least `work`.
     pub fn breaks(&self, other: &Self, change: &[f64], work: f64) -> (f64, f64) {
         let n = change.len();
         let mut worst = (0.0_f64, 0.0_f64);
@@ -99,10 +100,10 @@ impl WornState {
     }
 }
 
-/// Derivatives at one steady vibration by the loads.
+/// Works, amplitude and derivatives by the loads at one steady vibration.
 struct Vibration {
     works: Vec<f64>,
-    /// ∂E_j/∂N_k at [k n + j].
+    /// Derivatives ∂E_j/∂N_k of the works by the loads, at index k n + j.
     work_by_load: Vec<f64>,
     amplitude: f64,
     amplitude_by_load: Vec<f64>,
@@ -111,20 +112,23 @@ struct Vibration {
     slips: Vec<bool>,
 }
 
-/// Makes the states of one life.
+/// Solves the steady vibrations of one life.
 pub(crate) struct WornStates<'a> {
     model: &'a Model,
     solver: SolverOptions,
     options: &'a LifeOptions<'a>,
-    /// Loads without wear.
+    /// Normal loads of the new machine.
     new: Vec<f64>,
-    /// Number of states so far.
+    /// Number of steady vibrations solved so far.
     pub solutions: usize,
-    /// Largest friction force of the first state, by its work and amplitude: the scale of loads that are 0 at rest.
+    /// Largest friction force of the first state, from its work and amplitude: the scale of loads whose static value
+    /// is 0.
     friction: Option<f64>,
 }
 
 impl<'a> WornStates<'a> {
+    /// Checks the options, and reads the normal loads of the new machine.
+    ///
     /// # Errors
     /// Those of the options and of the solver; `Unsupported` for a load that follows a speed which is tied to the frequency.
     pub fn new(model: &'a Model, solver: &SolverOptions, options: &'a LifeOptions<'a>) -> Result<Self> {
@@ -162,7 +166,7 @@ impl<'a> WornStates<'a> {
         self.options.wear.len()
     }
 
-    /// S of two contacts.
+    /// Static stiffness S between the normals of contacts i and j.
     pub fn stiffness(&self, i: usize, j: usize) -> f64 {
         let n = self.len();
         match self.options.stiffness.get(j * n + i) {
@@ -183,18 +187,18 @@ impl<'a> WornStates<'a> {
         self.new.iter().fold(friction, |most, n| most.max(n.abs()))
     }
 
-    /// A quarter of the largest work of the first state, at the amplitude of a state: changes of works are seen relative to it.
+    /// Unit of works: a quarter of the largest work of the first state, scaled to the amplitude of a state.
     pub fn work_unit(&self, amplitude: f64) -> f64 {
         self.friction.unwrap_or(0.0) * amplitude.abs()
     }
 
-    /// The load of a contact under depths, which may be negative.
+    /// Load of contact i at given depths, which may be negative.
     pub fn raw_load(&self, i: usize, depths: &[f64]) -> f64 {
         let lost: f64 = depths.iter().enumerate().map(|(j, h)| self.stiffness(i, j) * h).sum();
         self.new[i] - lost
     }
 
-    /// A model with the loads that depths have left.
+    /// The model with the loads that remain at given depths.
     ///
     /// # Errors
     /// Those of the constants; `OutOfMemory`.
@@ -206,7 +210,7 @@ impl<'a> WornStates<'a> {
         Ok(model)
     }
 
-    /// The steady vibration under depths; `near`: that under depths nearby, which it goes on from.
+    /// The steady vibration at given depths; `near` is the state at depths nearby, from which it is continued.
     ///
     /// # Errors
     /// Those of the solver; `StoppedNoPeak` where there is no peak.
@@ -283,7 +287,7 @@ impl<'a> WornStates<'a> {
         Ok(state)
     }
 
-    /// Adds a vibration with its share of the cycles, with derivatives by depths: ∂/∂h = −S ∂/∂N.
+    /// Adds the vibration of a duty with its share of the cycles, and its derivatives by the depths: ∂/∂h = −S ∂/∂N.
     fn add(&self, state: &mut WornState, found: &Vibration, share: f64) {
         let n = self.len();
         let largest = found.amplitude > state.amplitude;
@@ -317,12 +321,12 @@ impl<'a> WornStates<'a> {
         }
     }
 
-    /// Options that keep the response degree of freedom of the first solution.
+    /// Keeps the response degree of freedom of the first solution in the options.
     fn keep(&mut self, branch: &Branch) {
         self.solver.response_dof = Some(branch.response_dof());
     }
 
-    /// The vibration of a duty, and its harmonics as a guess of the next one.
+    /// The vibration of a duty; and its harmonics as a guess for the next one.
     fn duty(
         &mut self,
         (model, state): (&Model, &WornState),
@@ -428,7 +432,7 @@ impl<'a> WornStates<'a> {
         }
     }
 
-    /// The constants by which the loads act: the normal load, or the gap where there is one.
+    /// The constants of the contacts through which their loads act: the normal load, or the gap where a law has one.
     fn parameters(&self, model: &Model) -> Result<Vec<Parameter<'static>>> {
         let mut parameters = Vec::new();
         for wear in self.options.wear {
@@ -439,7 +443,7 @@ impl<'a> WornStates<'a> {
         Ok(parameters)
     }
 
-    /// Change of the constant per load.
+    /// Change of that constant per change of the load of contact k.
     fn per_load(&self, model: &Model, k: usize) -> f64 {
         match constant(model, self.options.wear[k].contact) {
             Constant::Gap => -1.0 / self.kn(k),
@@ -523,7 +527,7 @@ impl<'a> WornStates<'a> {
     }
 }
 
-/// The constant by which the load of a contact acts.
+/// The constant through which the load of a contact acts.
 fn constant(model: &Model, contact: usize) -> Constant {
     let contact = &model.contacts()[contact];
     if contact.constant(Constant::Kn) > 0.0 && contact.load() < 0.0 {
@@ -533,7 +537,7 @@ fn constant(model: &Model, contact: usize) -> Constant {
     }
 }
 
-/// A response without reports of its points.
+/// A forced response whose points are not reported to the caller.
 fn quietly(
     model: &Model,
     solver: &SolverOptions,
@@ -544,7 +548,7 @@ fn quietly(
     forced_response(model, solver, options, &mut quiet)
 }
 
-/// Refuses a branch that ended early.
+/// The branch, or an error if it ended early.
 fn whole(branch: Branch) -> Result<Branch> {
     match branch.status() {
         Status::Ok => Ok(branch),

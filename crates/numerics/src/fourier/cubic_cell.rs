@@ -13,14 +13,14 @@ const CUBIC_CELL_OF_SLOPES: f64 = 0.008_018_753_738_744_8;
 /// Kind: tuned; measured on: not recorded.
 const CUBIC_CELL_STEPS: usize = 2;
 
-/// The cubic by the ordinates of its control points, between which it lies (Bernstein).
+/// A cubic by the ordinates of its control points, between which it lies (Bernstein form).
 pub(super) struct CubicCell {
     control: [f64; 4],
     width: f64,
 }
 
 impl CubicCell {
-    /// From values and derivatives at the ends.
+    /// The cubic with given values and slopes at both ends of a cell.
     pub fn new(values: [f64; 2], slopes: [f64; 2], width: f64) -> Self {
         let third = width / 3.0;
         Self {
@@ -34,14 +34,15 @@ impl CubicCell {
         }
     }
 
-    /// Whether the function, of whose fourth derivative a bound is given, certainly stays farther from zero than `noise`.
+    /// Whether the function certainly stays farther from zero than `noise`; `fourth` is a bound of its fourth
+    /// derivative.
     pub fn keeps_sign(&self, fourth: f64, noise: f64) -> bool {
         let square = self.width * self.width;
         let rest = OF_VALUES * fourth * square * square + noise;
         self.control.iter().all(|c| *c > rest) || self.control.iter().all(|c| *c < -rest)
     }
 
-    /// Whether its derivative certainly keeps its sign, where values err by `noise`.
+    /// Whether the slope of the function certainly keeps its sign, where values err by `noise`.
     pub fn is_monotone(&self, fourth: f64, noise: f64) -> bool {
         let [a, b, c, d] = self.control;
         let square = self.width * self.width;
@@ -50,7 +51,7 @@ impl CubicCell {
         rises.iter().all(|rise| *rise > rest) || rises.iter().all(|rise| *rise < -rest)
     }
 
-    /// About the share of the width at which the cubic vanishes, where the values at the ends have opposite signs.
+    /// Approximate root of the cubic, as a share of the width; the values at both ends must have opposite signs.
     pub fn root(&self) -> f64 {
         let [a, b, c, d] = self.control;
         // The cubic in powers of the share.

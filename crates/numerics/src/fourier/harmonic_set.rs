@@ -14,7 +14,7 @@ pub struct HarmonicSet {
     numbers: Vec<usize>,
     base: usize,
     stride: usize,
-    /// Number of the harmonic whose amplitude is that of a response.
+    /// Index, among the carried harmonics, of the one whose amplitude is reported as a response.
     watched: usize,
 }
 
@@ -63,7 +63,7 @@ impl HarmonicSet {
         })
     }
 
-    /// All harmonics 0 … `highest`.
+    /// The set of all harmonics 0 … `highest`.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -72,7 +72,7 @@ impl HarmonicSet {
         Self::excited(&[], highest, true, false, true)
     }
 
-    /// A copy, allocated fallibly.
+    /// A copy that returns an error if memory is short.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -91,14 +91,14 @@ impl HarmonicSet {
         &self.numbers
     }
 
-    /// Position of the fundamental, harmonic 1, among the carried harmonics; 0 if it is not carried.
+    /// Index of the fundamental, harmonic 1, among the carried harmonics; 0 if it is not carried.
     #[must_use]
     #[inline]
     pub fn fundamental(&self) -> usize {
         self.numbers.iter().position(|&h| h == 1).unwrap_or(0)
     }
 
-    /// Watches the amplitude of a harmonic, if it is carried; the lowest vibrating one is watched otherwise.
+    /// Selects the harmonic whose amplitude is watched; if it is not carried, the lowest vibrating one is.
     #[inline]
     pub fn watch(&mut self, number: usize) {
         if self.numbers.contains(&number) {
@@ -106,7 +106,7 @@ impl HarmonicSet {
         }
     }
 
-    /// Position of the harmonic that is watched.
+    /// Index of the watched harmonic among the carried ones.
     #[must_use]
     #[inline]
     pub fn watched(&self) -> usize {
@@ -155,7 +155,7 @@ impl HarmonicSet {
         1 + k * self.stride
     }
 
-    /// Highest reduced number.
+    /// Highest reduced number of the carried harmonics.
     #[must_use]
     #[inline]
     pub fn highest_reduced(&self) -> usize {
@@ -190,7 +190,7 @@ impl HarmonicSet {
         self.get_at(packed, 0, i)
     }
 
-    /// The same in a packed signal that begins at `first`.
+    /// Coefficient of the i-th carried harmonic in a packed signal that begins at index `first`.
     #[must_use]
     #[inline]
     pub fn get_at(&self, packed: &[f64], first: usize, i: usize) -> Complex64 {

@@ -19,13 +19,13 @@ const CONTEXT: &str = "a response";
 /// Kind: rounding.
 const SAME_SIZE: f64 = 1e-12;
 
-/// The number that is read from a gauge over a period.
+/// Number that is read from a signal over a period.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Measure {
-    /// Amplitude of the fundamental: harmonic 1, or the lowest one above zero that the motion has. With its phase.
+    /// Amplitude, with phase, of the fundamental: harmonic 1, or the lowest one above zero that the motion has.
     #[default]
     Fundamental,
-    /// Amplitude of one harmonic; 0 where the motion does not have it. With its phase.
+    /// Amplitude, with phase, of one harmonic; 0 where the motion does not have it.
     Harmonic(usize),
     /// Largest magnitude over the period.
     Peak,
@@ -35,14 +35,14 @@ pub enum Measure {
     Range,
 }
 
-/// The number that was read.
+/// Value of a measure, as read from a signal.
 #[derive(Clone, Copy, Debug)]
 pub struct Reading {
-    /// The measure.
+    /// Value of the measure.
     pub value: f64,
-    /// The complex amplitude of a single harmonic; NaN where the measure has none.
+    /// Complex amplitude of a single harmonic; NaN for other measures.
     pub complex: Complex64,
-    /// Time of the largest magnitude, or of the largest value of a range, in [0, 2π) of the reduced time τ; NaN for the others.
+    /// Reduced time τ in [0, 2π) of the largest magnitude, or of a range's largest value; NaN for other measures.
     pub instant: f64,
 }
 
@@ -51,7 +51,7 @@ pub struct Reader {
     turning_points: TurningPoints,
     extrema: Vec<Extremum>,
     weights: Vec<Complex64>,
-    /// Instants of the extremes that were read last; NaN for measures without them.
+    /// Instants of the extremes read last, as reduced times; NaN for measures without extremes.
     instants: [f64; 2],
 }
 
@@ -86,8 +86,8 @@ impl Reader {
         self.weights.iter().enumerate().map(part).sum()
     }
 
-    /// The reduced times of the extremes that were read last, and their derivatives −ẋ′/ẍ along a change of the signal; NaN for
-    /// measures without them.
+    /// Reduced times of the extremes read last, and their derivatives −ẋ′/ẍ along a change of the signal; NaN for
+    /// measures without extremes.
     #[must_use]
     pub fn instants(&self, set: &HarmonicSet, packed: &[f64], change: &[f64]) -> ([f64; 2], [f64; 2]) {
         let rates = self.instants.map(|tau| {
@@ -103,7 +103,7 @@ impl Reader {
         (self.instants, rates)
     }
 
-    /// Reads a packed signal.
+    /// Reads a measure from a packed signal.
     ///
     /// # Errors
     /// `StoppedByCaller`.
@@ -162,7 +162,7 @@ impl Reader {
         })
     }
 
-    /// Reads one harmonic.
+    /// Reads the amplitude of one harmonic.
     fn harmonic(&mut self, set: &HarmonicSet, number: usize, packed: &[f64]) -> Reading {
         let mut complex = Complex64::ZERO;
         if let Ok(i) = set.numbers().binary_search(&number) {
@@ -177,7 +177,7 @@ impl Reader {
         }
     }
 
-    /// The stationary instant with the largest `size`.
+    /// The extremum of the signal at which `size` of its value is largest.
     fn extremes(
         &mut self,
         set: &HarmonicSet,
@@ -209,7 +209,7 @@ impl Reader {
         Ok(best)
     }
 
-    /// Adds the weights of the value at an instant.
+    /// Adds the weights of the value at the instant `tau`, times `sign`.
     fn add_instant(&mut self, set: &HarmonicSet, tau: f64, sign: f64) {
         for (c, number) in self.weights.iter_mut().zip(set.numbers()) {
             let p = (number / set.base().max(1)) as f64;

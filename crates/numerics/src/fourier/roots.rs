@@ -13,17 +13,17 @@ const MOST_VALUES: usize = 100;
 /// Kind: rounding.
 const LAST_ERROR: f64 = 1e-17;
 
-/// Two times between which a function changes its sign.
+/// Interval between two times in which a function changes its sign.
 struct Bracket {
-    /// The side on which it is negative, and the other one.
+    /// Time at which the function is negative; and time at which it is not.
     low: f64,
     high: f64,
-    /// Length of the last step.
+    /// Length of the last step towards the root.
     last: f64,
 }
 
 impl Bracket {
-    /// From two times and the value at the first.
+    /// The bracket of two times, with the value at the first one.
     #[inline]
     fn new(a: f64, b: f64, fa: f64) -> Self {
         let (low, high) = if fa < 0.0 { (a, b) } else { (b, a) };
@@ -34,7 +34,7 @@ impl Bracket {
         }
     }
 
-    /// Takes the value at a time within.
+    /// Replaces an end by a time within the bracket, according to the value at this time.
     #[inline]
     fn narrow(&mut self, tau: f64, value: f64) {
         if value < 0.0 {
@@ -44,7 +44,7 @@ impl Bracket {
         }
     }
 
-    /// A guess that lies between two times, or else the middle; comparisons with NaN are false.
+    /// First time to try: the guess if it lies between `a` and `b`, else the middle; comparisons with NaN are false.
     #[inline]
     fn begin(a: f64, b: f64, guess: f64) -> f64 {
         if guess > a && guess < b { guess } else { 0.5 * (a + b) }
@@ -55,7 +55,8 @@ impl Bracket {
         (tau - self.low) * (tau - self.high) < 0.0
     }
 
-    /// The next time: the proposed one where it lies within and halves the step at least, or else the middle.
+    /// Next time to try: the proposed one if it lies within the bracket and at least halves the step, else the
+    /// middle.
     #[inline]
     fn step(&mut self, tau: f64, proposed: f64) -> f64 {
         let next = if self.holds(proposed) && (proposed - tau).abs() <= 0.5 * self.last {
@@ -67,7 +68,7 @@ impl Bracket {
         next
     }
 
-    /// A root after one more step of Newton's method, if that is not longer than the last step was.
+    /// The root after one more Newton step, if this is not longer than twice the last step.
     ///
     /// Twice as long at most: bisection towards an end of the bracket that is the root but for rounding stops as far from it
     /// as its last step was long.

@@ -8,24 +8,24 @@ use std::f64::consts::PI;
 /// Value and three derivatives of a series at one time.
 #[derive(Clone, Copy, Debug)]
 pub struct Jet {
-    /// x(τ)
+    /// Value x(τ).
     pub x: f64,
-    /// dx/dτ
+    /// First derivative dx/dτ.
     pub dx: f64,
-    /// d²x/dτ²
+    /// Second derivative d²x/dτ².
     pub ddx: f64,
-    /// d³x/dτ³
+    /// Third derivative d³x/dτ³.
     pub dddx: f64,
 }
 
-/// x to x‴ of a packed signal at τ.
+/// Value and three derivatives of a packed signal at τ.
 #[must_use]
 #[inline]
 pub fn jet(set: &HarmonicSet, packed: &[f64], tau: f64) -> Jet {
     at_turn(set, packed, Complex64::cis(tau))
 }
 
-/// The same at the time whose e^{iτ} is `turn`.
+/// Value and three derivatives at the time τ with e^{iτ} = `turn`.
 fn at_turn(set: &HarmonicSet, packed: &[f64], mut turn: Complex64) -> Jet {
     let (mean, rest) = packed.split_at(usize::from(set.has_mean()));
     let stride = set.stride();
@@ -53,7 +53,7 @@ fn at_turn(set: &HarmonicSet, packed: &[f64], mut turn: Complex64) -> Jet {
     }
 }
 
-/// The jets of a signal at times that approach one another: most e^{iτ} follow from the one before.
+/// Values of a signal at times that approach one another, where most e^{iτ} follow from the one before.
 struct Approach<'a> {
     set: &'a HarmonicSet,
     packed: &'a [f64],
@@ -65,7 +65,7 @@ struct Approach<'a> {
 /// Kind: fixed.
 const SMALL_ANGLE: f64 = 0.1;
 
-/// e^{is} of a small angle, by its series up to s¹⁰.
+/// e^{is} for a small angle s, by its power series up to s¹⁰.
 #[inline]
 fn small_turn(s: f64) -> Complex64 {
     let q = s * s;
@@ -112,7 +112,7 @@ fn last_step(set: &HarmonicSet) -> f64 {
 /// Kind: tuned; measured on: not recorded.
 pub const VALUES_OF_A_CROSSING: usize = 8;
 
-/// The time in (a, b) at which a signal, monotone there, passes `level`.
+/// The time in (a, b) at which a signal passes `level`; the signal must be monotone between these times.
 #[must_use]
 #[inline]
 pub fn crossing(set: &HarmonicSet, packed: &[f64], a: f64, b: f64, xa: f64, xb: f64, level: f64) -> f64 {
@@ -125,7 +125,8 @@ pub fn crossing(set: &HarmonicSet, packed: &[f64], a: f64, b: f64, xa: f64, xb: 
     })
 }
 
-/// The time between two at which x′, of opposite signs there, vanishes, and x there; from x′ at the first one and a guess.
+/// The time between two others at which x′ vanishes, and x at this time. x′ has opposite signs at both; the value at
+/// the first one and a guess are given.
 #[inline]
 pub(super) fn turning_point(
     set: &HarmonicSet,

@@ -18,18 +18,18 @@ const TRANSFORM_TABLE_LIMIT: usize = 1 << 12;
 /// Relation of the second half of a turn to the first, where only the first is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Half {
-    /// It has opposite sign: odd harmonics.
+    /// Opposite sign: the signal has odd harmonics only.
     Opposite,
-    /// It repeats: even harmonics.
+    /// Equal sign: the signal has even harmonics only.
     Repeats,
 }
 
-/// Positions of the samples of one signal among those of others: `first + j·step`.
+/// Positions of the samples of one signal in an array of several: `first + j·step`.
 #[derive(Clone, Copy, Debug)]
 pub struct Lane {
-    /// Place of the first value.
+    /// Index of the first sample.
     pub first: usize,
-    /// Distance of a value from the next.
+    /// Distance from one sample to the next.
     pub step: usize,
 }
 
@@ -41,15 +41,15 @@ impl Lane {
 
 /// Tables and memory for the signals of one harmonic set.
 pub struct Transform {
-    /// Samples of a turn.
+    /// Number of samples of a whole turn.
     turn: usize,
-    /// Stored samples: all, or the first half.
+    /// Number of stored samples: all, or the first half.
     held: usize,
     kind: Kind,
 }
 
 enum Kind {
-    /// Per n = 0 ..= 2·highest the rows cos(nτⱼ) and sin(nτⱼ).
+    /// Per n = 0 ..= 2·highest, the rows cos(nτⱼ) and sin(nτⱼ).
     Table { rows: Vec<f64>, signal: Vec<f64> },
     /// Transforms over the whole turn.
     Fast {

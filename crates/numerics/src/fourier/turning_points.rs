@@ -16,7 +16,7 @@ use std::sync::Arc;
 pub struct Extremum {
     /// Time, in [0, 2π).
     pub tau: f64,
-    /// Value of the signal there.
+    /// Value of the signal at this time.
     pub x: f64,
 }
 
@@ -41,13 +41,13 @@ pub struct TurningPoints {
     points: usize,
     spacing: f64,
     slope: Vec<f64>,
-    /// x″ there.
+    /// Values of x″ at the grid points.
     turning: Vec<f64>,
     kind: Grid,
 }
 
 enum Grid {
-    /// Per harmonic the rows −p sin(pτⱼ) and −p cos(pτⱼ).
+    /// Per harmonic, the rows −p sin(pτⱼ) and −p cos(pτⱼ).
     Table(Vec<f64>),
     /// Inverse transform over the whole turn of x′ + i x″.
     Transform {
@@ -251,7 +251,8 @@ impl TurningPoints {
 /// Kind: block.
 const TURNING_POINTS_BLOCK: usize = 4;
 
-/// Whether a value and all that follow are farther from zero than `far`, on the same side.
+/// Whether all values, the first one and those of the block, are on the same side of zero and farther from it than
+/// `far`.
 #[inline]
 fn is_far(first: f64, block: &[f64; TURNING_POINTS_BLOCK], far: f64) -> bool {
     let (mut low, mut high) = (first, first);
@@ -262,15 +263,15 @@ fn is_far(first: f64, block: &[f64; TURNING_POINTS_BLOCK], far: f64) -> bool {
     low > far || high < -far
 }
 
-/// Sines of the angles that divide a turn into equal parts, a multiple of 4.
+/// Sines of the angles that divide a turn into equal parts, whose number is a multiple of 4.
 struct Sines {
-    /// Those of the first quarter of the turn, and its parts.
+    /// Sines in the first quarter of the turn; and the number of parts of a turn.
     first: [f64; 2 * TURNING_POINTS_TABLE_LIMIT + 1],
     quarter: usize,
 }
 
 impl Sines {
-    /// For at most 8 `TURNING_POINTS_TABLE_LIMIT` parts.
+    /// The table for at most 8 `TURNING_POINTS_TABLE_LIMIT` parts.
     fn new(parts: usize) -> Self {
         let quarter = parts / 4;
         let mut first = [0.0; 2 * TURNING_POINTS_TABLE_LIMIT + 1];
@@ -280,7 +281,7 @@ impl Sines {
         Self { first, quarter }
     }
 
-    /// The sine of so many parts, less than a turn.
+    /// Sine of the angle of `parts` parts, less than a turn.
     fn within(&self, parts: usize) -> f64 {
         let (half, sign) = if parts < 2 * self.quarter {
             (parts, 1.0)
@@ -291,13 +292,13 @@ impl Sines {
     }
 }
 
-/// x′ and x″ at the times of a table.
+/// Computes x′ and x″ at the grid points, from the rows of a table.
 struct Scan<'a> {
     slope: &'a mut [f64],
     turning: &'a mut [f64],
     rest: &'a [f64],
     table: &'a [f64],
-    /// The first reduced number, and the distance to the next.
+    /// First reduced number, and distance from one to the next.
     numbers: (f64, f64),
 }
 
@@ -334,9 +335,9 @@ struct Bounds {
     /// Bounds of |x‴| and of the fifth derivative.
     bend: f64,
     fifth: f64,
-    /// Values of x′ up to this are rounding, mostly that of the angles pτ.
+    /// Size up to which values of x′ are rounding, mostly of the angles pτ.
     noise: f64,
-    /// Bound of |x|.
+    /// Upper bound of |x|.
     size: f64,
 }
 
@@ -367,19 +368,19 @@ impl Bounds {
         (1e-14 * (self.size / self.bend)).cbrt()
     }
 
-    /// The most by which x′ departs from its chord within a cell.
+    /// Largest departure of x′ from its chord within a cell.
     #[inline]
     fn largest_dip(&self, width: f64) -> f64 {
         0.125 * self.bend * width * width
     }
 }
 
-/// x′ at a time, with its sign; within rounding of zero it has the sign of the time before.
+/// x′ at a time, with its sign; if x′ is zero to rounding, it has the sign of the time before.
 #[derive(Clone, Copy)]
 struct Slope {
     tau: f64,
     value: f64,
-    /// x″ there.
+    /// Second derivative x″ at this time.
     turning: f64,
     positive: bool,
 }

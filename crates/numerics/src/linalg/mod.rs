@@ -5,6 +5,7 @@ pub(crate) mod elimination_order;
 pub mod exact_sums;
 pub mod factors;
 pub mod iterative;
+pub mod libraries;
 pub mod newton;
 pub mod sparse_storage;
 mod vectors;

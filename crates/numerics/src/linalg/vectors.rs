@@ -6,14 +6,14 @@ use faer::{Accum, MatMut, MatRef, Par};
 use num_complex::Complex64;
 use pulp::{Arch, Simd, WithSimd};
 
-/// aᴴ b
+/// Inner product aᴴ b.
 #[must_use]
 #[inline]
 pub fn inner(a: &[Complex64], b: &[Complex64]) -> Complex64 {
     a.iter().zip(b).map(|(a, b)| a.conj() * b).sum()
 }
 
-/// v ← v − part q
+/// v ← v − part q.
 #[inline]
 pub fn remove(v: &mut [Complex64], q: &[Complex64], part: Complex64) {
     for (v, q) in v.iter_mut().zip(q) {
@@ -21,7 +21,7 @@ pub fn remove(v: &mut [Complex64], q: &[Complex64], part: Complex64) {
     }
 }
 
-/// Σ aⱼ bⱼ in eight partial sums, which the processor adds in parallel.
+/// Product Σ aⱼ bⱼ in eight partial sums, which the processor adds in parallel.
 #[must_use]
 #[inline(always)]
 #[allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
@@ -77,7 +77,8 @@ pub fn power_of_two(x: f64) -> f64 {
 /// Kind: tuned; measured on: not recorded.
 pub const COPIED_UP_TO: usize = 16 * 16 * 16;
 
-/// A product of matrices so large that the memory for packing them, which a thread keeps, is there afterwards.
+/// Computes a product of matrices so large that the memory for packing them, which each thread keeps, exists
+/// afterwards.
 ///
 /// # Errors
 /// `OutOfMemory` for the matrices.
@@ -99,7 +100,7 @@ pub fn first_product() -> Result<()> {
     Ok(())
 }
 
-/// x = Φ ξ for a column-major Φ with `x.len()` rows.
+/// x ← Φ ξ for a column-major Φ with `x.len()` rows.
 #[inline]
 pub fn expand(vectors: &[Complex64], xi: &[Complex64], x: &mut [Complex64]) {
     x.fill(Complex64::ZERO);
@@ -110,7 +111,7 @@ pub fn expand(vectors: &[Complex64], xi: &[Complex64], x: &mut [Complex64]) {
     }
 }
 
-/// out += factor·A x for a column-major A with `out.len()` rows.
+/// out ← out + factor·A x for a column-major A with `out.len()` rows.
 #[inline]
 pub fn add_product(factor: f64, a: &[f64], x: &[f64], out: &mut [f64]) {
     Arch::new().dispatch(Product(factor, a, x, out));
@@ -165,7 +166,7 @@ impl WithSimd for Product<'_> {
     }
 }
 
-/// The same with N rows, which are summed in registers.
+/// Adds the product for N rows, which are summed in registers.
 #[inline(always)]
 #[allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
 fn few_rows<const N: usize>(factor: f64, a: &[f64], x: &[f64], out: &mut [f64]) {
@@ -181,8 +182,9 @@ fn few_rows<const N: usize>(factor: f64, a: &[f64], x: &[f64], out: &mut [f64]) 
     }
 }
 
-/// The first `rows` numbers of each column of a column-major matrix += Σⱼ aⱼ bⱼᵀ, over rows aⱼ of `rows` numbers and the first
-/// `columns` numbers of rows bⱼ that are `apart`, as many as the matrix has columns; columns are `stride` apart.
+/// Adds Σⱼ aⱼ bⱼᵀ to the first `rows` numbers of each column of a column-major matrix. The rows aⱼ have `rows`
+/// numbers; of the rows bⱼ, which are `apart`, the first `columns` are used, as many as the matrix has columns.
+/// Columns of the matrix are `stride` apart.
 #[inline]
 pub fn add_outer_products_to(
     (a, rows): (&[f64], usize),
@@ -201,8 +203,8 @@ pub fn add_outer_products_to(
     );
 }
 
-/// out += Σⱼ aⱼ bⱼᵀ over `count` rows aⱼ of `rows` numbers and the first `columns` numbers of rows bⱼ that are `stride`
-/// apart; `out` is column-major.
+/// out ← out + Σⱼ aⱼ bⱼᵀ over `count` rows aⱼ of `rows` numbers and the first `columns` numbers of rows bⱼ that are
+/// `stride` apart; `out` is column-major.
 #[inline]
 pub fn add_outer_products(
     (a, rows): (&[f64], usize),
@@ -220,7 +222,7 @@ pub fn add_outer_products(
     );
 }
 
-/// outⱼ = Aᵀ bⱼ for rows bⱼ and outⱼ, with `columns` columns of A that are as long as a row bⱼ.
+/// outⱼ ← Aᵀ bⱼ for rows bⱼ and outⱼ; A has `columns` columns, each as long as a row bⱼ.
 #[inline]
 pub fn transposed_products(a: &[f64], columns: usize, b: &[f64], out: &mut [f64]) {
     let (length, count) = (a.len() / columns.max(1), out.len() / columns.max(1));

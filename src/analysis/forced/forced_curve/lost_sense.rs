@@ -16,16 +16,17 @@ use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::model::Model;
 use crate::model::matrices::structure::MatrixKind;
 use crate::model::natural_modes::resonances::Resonance;
+use crate::options::Range;
 use crate::options::{ForcedOptions, SolverOptions};
 use crate::problem::Problem;
 use crate::results::{Branch, SpecialKind};
 
-/// The equations of a forced response that lose the sense of one point.
+/// Test equations of a forced response that reverse the sense of one resolved point.
 struct Misled<'a, 'b> {
     response: &'a mut ForcedDiscretised<'b>,
-    /// Points of the branch at which the sense of the next resolved point is reversed.
+    /// Number of points of the branch after which the sense of the next resolved point is reversed.
     at: usize,
-    /// Solutions that are found after that, before all others are refused.
+    /// Number of solutions that are found after this, before all others are refused.
     found_then: usize,
     reversed: bool,
 }
@@ -85,7 +86,7 @@ impl Discretised for Misled<'_, '_> {
         self.response.take_over_estimate(point, factor)
     }
 
-    fn resonances(&mut self, range: (f64, f64)) -> Result<Option<Vec<Resonance>>> {
+    fn resonances(&mut self, range: Range) -> Result<Option<Vec<Resonance>>> {
         self.response.resonances(range)
     }
 
@@ -145,7 +146,7 @@ fn model() -> Model {
     model
 }
 
-/// The branch with the sense of a point reversed from the `at`-th on, and whether the log tells of a correction.
+/// The branch with the sense of a point reversed from the `at`-th on; and whether the log reports a correction.
 fn misled(at: usize, found_then: usize, (from, to): (f64, f64)) -> (Branch, bool) {
     let range = ForcedOptions {
         omega_start: from,

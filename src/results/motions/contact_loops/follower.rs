@@ -16,16 +16,16 @@ use crate::results::motions::signal_check::check_time;
 /// Kind: block.
 const SLICE: usize = 1 << 14;
 
-/// A contact under a periodic motion, its events located and its states found, at n times.
+/// A contact under a periodic motion at n times, with its events located and its states found.
 pub struct Follower<'a> {
     motion: PeriodicMotion<'a>,
-    /// The packed motion of the contact, where the law has an exchanged one.
+    /// Packed motion of the contact itself, where the law has an exchanged motion; else `None`.
     actual: Option<&'a [f64]>,
     n: usize,
     way: Way<'a>,
 }
 
-/// Source of the force.
+/// How the force is computed at the times.
 enum Way<'a> {
     /// A linear spring of this stiffness in every direction.
     Spring(f64),
@@ -48,7 +48,7 @@ impl<'a> Follower<'a> {
         }
     }
 
-    /// A law at n times; `samples` are those requested in the solution.
+    /// Follows a law at n times; `samples` is the number requested in the solution.
     ///
     /// # Errors
     /// `OutOfMemory`; those of callbacks; `NoConvergence` for a law whose states do not become periodic; `StoppedByCaller`.
@@ -69,7 +69,7 @@ impl<'a> Follower<'a> {
         Ok(Self { motion, actual, n, way })
     }
 
-    /// Calls `take` with one slice after the other.
+    /// Calls `take` with one slice of the times after the other.
     ///
     /// # Errors
     /// `OutOfMemory`, `StoppedByCaller`, and those of a law of the caller.
@@ -93,7 +93,7 @@ impl<'a> Follower<'a> {
         Ok(())
     }
 
-    /// Fills a slice from its first time on.
+    /// Fills a slice with motions, forces and states, from time number `first` of n on.
     fn fill(&mut self, first: usize, out: &mut Times, interrupt: &Interrupt<'_>) -> Result<()> {
         let PeriodicMotion { set, directions: d, .. } = self.motion;
         let n = self.n;

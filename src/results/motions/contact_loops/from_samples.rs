@@ -15,7 +15,7 @@ use crate::results::motions::signal_check::check_time;
 /// Kind: cap.
 const MOST_OF_A_MARCH: usize = 500 << 20;
 
-/// A law without memory, called with some times at once.
+/// A law without memory, evaluated at many times in one call.
 pub(super) struct CalledForces<'a> {
     law: &'a dyn Memoryless,
     v: Vec<f64>,
@@ -25,7 +25,7 @@ pub(super) struct CalledForces<'a> {
 }
 
 impl<'a> CalledForces<'a> {
-    /// Memory for so many times.
+    /// Memory for at most `most` times in one call.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -41,7 +41,7 @@ impl<'a> CalledForces<'a> {
         })
     }
 
-    /// Forces at the motions in `out`, which begin at the time `first` of n, in one call.
+    /// Computes the forces at the motions in `out`, whose times begin with number `first` of n, in one call.
     ///
     /// # Errors
     /// `StoppedByCaller` and those of the law.
@@ -80,16 +80,16 @@ impl<'a> CalledForces<'a> {
     }
 }
 
-/// Forces of a law with states, marched over a multiple of the n times that is no less than the samples which the law takes
+/// Forces of a law with states, marched over a multiple of the n times with at least as many samples as the law takes
 /// in the solution.
 pub(super) struct MarchedForces {
-    /// Forces at the samples, d a sample.
+    /// Forces at the samples, d numbers a sample.
     forces: Vec<f64>,
     stride: usize,
 }
 
 impl MarchedForces {
-    /// Marches; `requested` are the samples of the solution.
+    /// Marches the law over the period; `requested` is the number of samples of the solution.
     ///
     /// # Errors
     /// `OutOfMemory`, also where the march of so many times would take more than 500 MB; those of the law, `NoConvergence` when
@@ -131,8 +131,8 @@ impl MarchedForces {
     }
 }
 
-/// Bytes of a march for each of its samples: the basis of the motion and its derivative, the motion and the velocity, and what the
-/// law tells.
+/// Bytes of a march for each of its samples: basis of the motion and its derivative, motion, velocity, and results of
+/// the law.
 fn of_a_sample(motion: &PeriodicMotion<'_>, law: &dyn Hysteretic) -> usize {
     let (d, s, m) = (motion.directions, law.states(), motion.set.packed_len());
     let signals = (m + d) * (1 + usize::from(law.uses_velocity())) + 2;

@@ -19,7 +19,7 @@ pub struct ScalarOrbit<'a> {
     motion: &'a [f64],
     law: &'a dyn Law,
     pieces: Vec<Piece>,
-    /// x at the anchor of each piece, 0 without one.
+    /// Motion x at the anchor of each piece; 0 without an anchor.
     anchors: Vec<f64>,
 }
 

@@ -11,7 +11,7 @@ pub(super) const CONTEXT: &str = "the loop of a contact";
 #[derive(Clone, Copy)]
 pub(super) struct PeriodicMotion<'a> {
     pub set: &'a HarmonicSet,
-    /// d·m numbers, one direction after the other.
+    /// Packed motions, d·m numbers, one direction after the other.
     pub packed: &'a [f64],
     pub directions: usize,
     pub omega: f64,
@@ -25,30 +25,30 @@ impl<'a> PeriodicMotion<'a> {
     }
 }
 
-/// A contact at ωt = 2πj/n, j = 0 .. n.
+/// Motion, force and state of a contact at the times ωt = 2πj/n, j = 0 .. n.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Times {
-    /// Motions, n × d.
+    /// Relative motions, n × d, time after time.
     pub motion: Vec<f64>,
-    /// Forces, n × d.
+    /// Contact forces, n × d, time after time.
     pub force: Vec<f64>,
-    /// States of the contact, n.
+    /// States of the contact, n values.
     pub state: Vec<State>,
 }
 
-/// A contact over the whole period.
+/// Work and states of a contact over the whole period.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Account {
     /// Work per cycle that the contact takes from the motion.
     pub work: f64,
     /// Share of the period in slip.
     pub slip: f64,
-    /// Share of the period in which it is open.
+    /// Share of the period in which the contact is open.
     pub open: f64,
 }
 
-/// Sample j of n over the period, as a sample of the turn of τ, which is shorter where only multiples of a
-/// harmonic are carried. Whole numbers are exact.
+/// Index of sample j of n over the period, among the samples of the turn of τ, which is shorter where only multiples
+/// of a harmonic are carried. Whole numbers are exact.
 pub(super) fn sample(set: &HarmonicSet, j: usize, n: usize) -> usize {
     (set.base() as u128 * j as u128 % n.max(1) as u128) as usize
 }

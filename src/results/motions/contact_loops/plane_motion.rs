@@ -9,14 +9,14 @@ use crate::error::Result;
 use crate::interrupt::Interrupt;
 use crate::results::motions::contact_loops::period::PeriodicMotion;
 
-/// The law under a packed motion, followed over the period.
+/// Friction in a plane under a packed motion, followed over the period.
 pub(super) struct PlaneOrbit<'a> {
     law: &'a dyn PlaneFriction,
     evaluator: PlaneFrictionEvaluator,
 }
 
 impl<'a> PlaneOrbit<'a> {
-    /// Follows the force.
+    /// Follows the force from event to event over the period.
     ///
     /// # Errors
     /// `OutOfMemory`; `NoConvergence` for a motion that cannot be followed; `StoppedByCaller`.
@@ -27,7 +27,7 @@ impl<'a> PlaneOrbit<'a> {
         Ok(Self { law, evaluator })
     }
 
-    /// State and force at τ in [0, 2π), where the motions are x; the force is zero before.
+    /// Writes the force at τ in [0, 2π), where the motions are x, and returns the state; `force` must hold zeros.
     pub fn at(&self, tau: f64, x: &[f64], force: &mut [f64]) -> State {
         let path = self.evaluator.path();
         let load = self.law.normal().map_or(f64::INFINITY, |normal| normal.load_at(x[2]));

@@ -12,10 +12,10 @@ use crate::interrupt::Interrupt;
 use crate::results::motions::contact_loops::period::CONTEXT;
 use std::f64::consts::TAU;
 
-/// The law under a packed motion, x before y.
+/// Friction under a varying normal load, with its packed motions x before y.
 pub struct CoupledOrbit<'a> {
     law: &'a dyn VaryingNormalLoad,
-    /// Tangential pieces; none without friction.
+    /// Pieces of the tangential force; empty without friction.
     pieces: Vec<CoupledPiece>,
     /// Remembered part of each piece: at_x·x(r) + at_y·y(r) + constant.
     kept: Vec<f64>,

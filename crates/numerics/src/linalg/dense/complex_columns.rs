@@ -14,7 +14,7 @@ use pulp::{Arch, Simd, WithSimd};
 /// Kind: block.
 const LANES: usize = 8;
 
-/// out = A z for columns that begin `stride` apart; `memory` is as long as `out`.
+/// out ← A z for columns that begin `stride` apart; `memory` is as long as `out`.
 pub fn multiply(
     columns: &[Complex64],
     stride: usize,
@@ -67,7 +67,7 @@ impl WithSimd for Product<'_> {
     }
 }
 
-/// out = Aᴴ f for columns as long as f, one after the other; `turned` is memory for −i f.
+/// out ← Aᴴ f for columns as long as f, one after the other; `turned` is memory for −i f.
 pub fn multiply_adjoint(columns: &[Complex64], force: &[Complex64], turned: &mut [Complex64], out: &mut [Complex64]) {
     for (to, f) in turned.iter_mut().zip(force) {
         *to = Complex64::new(f.im, -f.re);

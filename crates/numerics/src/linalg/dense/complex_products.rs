@@ -14,7 +14,7 @@ use pulp::{Arch, Simd, WithSimd};
 /// Kind: tuned; measured on: not recorded.
 const LOOPS_UP_TO: usize = 48;
 
-/// c ← A B for matrices A and C of so many rows.
+/// c ← A B for matrices A and C with `rows` rows.
 pub fn multiply(a: &[Complex64], b: &[Complex64], c: &mut [Complex64], rows: usize) {
     if rows == 0 || a.is_empty() {
         c.fill(Complex64::ZERO);
@@ -35,8 +35,9 @@ pub fn multiply(a: &[Complex64], b: &[Complex64], c: &mut [Complex64], rows: usi
     Arch::new().dispatch(Loops { a, b, c, rows });
 }
 
-/// The product of small matrices, compiled for the vector instructions of the processor. As in `complex_columns`, Re b and Im b multiply
-/// the numbers of a column as they lie in memory, each into a sum of its own, here of as many numbers as registers hold.
+/// Product of small matrices, compiled for the vector instructions of the processor. As in `complex_columns`, Re b
+/// and Im b multiply the numbers of a column as they lie in memory, each into its own sum, for as many numbers as
+/// registers hold.
 struct Loops<'a> {
     a: &'a [Complex64],
     b: &'a [Complex64],
@@ -85,7 +86,7 @@ fn all_rows<const COLUMNS: usize>(mut c: [&mut [Complex64]; COLUMNS], a: &[Compl
     }
 }
 
-/// The rows from `first` on, as many as have so many real numbers.
+/// Computes the rows of C from `first` on that have NUMBERS real numbers in all.
 #[inline(always)]
 fn some_rows<const COLUMNS: usize, const NUMBERS: usize>(
     c: &mut [&mut [Complex64]; COLUMNS],
@@ -112,7 +113,7 @@ fn some_rows<const COLUMNS: usize, const NUMBERS: usize>(
     }
 }
 
-/// c ← Aᴴ B for matrices A and B of so many rows.
+/// c ← Aᴴ B for matrices A and B with `rows` rows.
 pub fn multiply_adjoint(a: &[Complex64], b: &[Complex64], c: &mut [Complex64], rows: usize) {
     if rows == 0 || c.is_empty() {
         return;

@@ -10,12 +10,12 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the eigenvalues of a matrix";
 
-/// Eigenvalues in ascending order and the matching mass-normalised vectors as columns.
-/// Infinite eigenvalues (motion without mass) are left out.
+/// Eigenvalues in ascending order, with mass-normalised vectors as columns. Infinite eigenvalues (motion without
+/// mass) are left out.
 pub struct Pairs {
-    /// λ, ascending.
+    /// Eigenvalues λ, ascending.
     pub values: Vec<f64>,
-    /// φ with φᴴ M φ = 1; one column per eigenvalue.
+    /// Vectors φ with φᴴ M φ = 1; one column per eigenvalue.
     pub vectors: DMatrix<Complex64>,
 }
 
@@ -39,7 +39,7 @@ const REGULAR: f64 = 1e-5;
 /// Kind: rounding.
 const MASSLESS: f64 = 1e-12;
 
-/// All finite eigenpairs of Hermitian K and positive semidefinite Hermitian M.
+/// All finite eigenpairs of a Hermitian K and a positive semidefinite Hermitian M.
 ///
 /// Where masses differ by far and their stiffness differs alike, as rotations beside translations, each motion is measured in a unit,
 /// a power of two, in which its own mass is about 1: a mass that is small in its unit alone would be taken for none.
@@ -62,7 +62,7 @@ pub fn generalised(k: &DMatrix<Complex64>, m: &DMatrix<Complex64>, interrupt: &I
     Ok(pairs)
 }
 
-/// The pairs of matrices whose motions have masses that may be compared.
+/// The eigenpairs of matrices in which the masses of all motions may be compared.
 ///
 /// M is diagonalised first, M = U Λ Uᴴ; massless directions are condensed statically onto the
 /// others (their rows carry K only), and the rest is scaled by Λ^(-1/2).
@@ -145,8 +145,8 @@ fn in_one_unit(k: &DMatrix<Complex64>, m: &DMatrix<Complex64>, interrupt: &Inter
     })
 }
 
-/// Powers of two near 1/√M_ii; `None` where the masses are about alike, where one is zero or negative, and where one is so small beside
-/// its own stiffness that it is none.
+/// Factor for each motion, a power of two near 1/√M_ii. `None` where the masses are about equal, where one is zero or
+/// negative, and where one is so small beside its own stiffness that it counts as none.
 fn units(k: &DMatrix<Complex64>, m: &DMatrix<Complex64>) -> Result<Option<Vec<f64>>> {
     let (mass, stiffness) = (m.diagonal(), k.diagonal());
     let range = |numbers: &mut dyn Iterator<Item = f64>| {
@@ -165,7 +165,8 @@ fn units(k: &DMatrix<Complex64>, m: &DMatrix<Complex64>) -> Result<Option<Vec<f6
     Ok(Some(units))
 }
 
-/// The pairs by M = L Lᴴ; `None` where M is not definite, or its smallest pivot is not above a share `regular` of the largest.
+/// The eigenpairs by M = L Lᴴ; `None` where M is not definite, or its smallest pivot is below a share `regular` of
+/// the largest.
 ///
 /// # Errors
 /// `NoConvergence`, `OutOfMemory`; `StoppedByCaller`.
@@ -200,13 +201,13 @@ pub fn with_definite_mass(
     Ok(Some(Pairs { values, vectors }))
 }
 
-/// Zeros, allocated fallibly.
+/// A matrix of zeros, or an error if memory is short.
 fn zeros(rows: usize, cols: usize) -> Result<DMatrix<Complex64>> {
     let values = try_vec(rows.saturating_mul(cols), Complex64::ZERO, CONTEXT)?;
     Ok(DMatrix::from_vec(rows, cols, values))
 }
 
-/// The matrix of some entries, allocated fallibly.
+/// A matrix with given entries, or an error if memory is short.
 fn filled(rows: usize, cols: usize, entry: impl Fn(usize, usize) -> Complex64) -> Result<DMatrix<Complex64>> {
     let mut a = zeros(rows, cols)?;
     for (j, mut column) in a.column_iter_mut().enumerate() {
@@ -217,7 +218,7 @@ fn filled(rows: usize, cols: usize, entry: impl Fn(usize, usize) -> Complex64) -
     Ok(a)
 }
 
-/// A copy, allocated fallibly.
+/// A copy of a matrix, or an error if memory is short.
 fn copy(a: &DMatrix<Complex64>) -> Result<DMatrix<Complex64>> {
     Ok(DMatrix::from_vec(
         a.nrows(),
@@ -226,12 +227,12 @@ fn copy(a: &DMatrix<Complex64>) -> Result<DMatrix<Complex64>> {
     ))
 }
 
-/// The conjugate transpose, allocated fallibly.
+/// The conjugate transpose of a matrix, or an error if memory is short.
 fn adjoint(a: &DMatrix<Complex64>) -> Result<DMatrix<Complex64>> {
     filled(a.ncols(), a.nrows(), |i, j| a[(j, i)].conj())
 }
 
-/// a b, a few columns at a time.
+/// Product a b, computed a few columns at a time with checks for a stop.
 fn product(a: &DMatrix<Complex64>, b: &DMatrix<Complex64>, interrupt: &Interrupt<'_>) -> Result<DMatrix<Complex64>> {
     let mut c = zeros(a.nrows(), b.ncols())?;
     for first in (0..b.ncols()).step_by(EIGEN_AT_ONCE) {

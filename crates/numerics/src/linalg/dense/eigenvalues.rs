@@ -18,7 +18,8 @@ const EIGENVALUES_MOST_ITERATIONS: usize = 60;
 /// Kind: cap.
 const EXCEPTIONAL: usize = 10;
 
-/// The eigenvalues of the column-major matrix `a` of order n, which is overwritten, one after the other to `found`.
+/// Computes the eigenvalues of the column-major matrix `a` of order n, which is overwritten, and passes each to
+/// `found`.
 ///
 /// # Errors
 /// `NoConvergence`; `StoppedByCaller`; those of `found`.
@@ -67,7 +68,7 @@ pub fn of_real(
     Ok(())
 }
 
-/// First row of the last block that no zero below the diagonal divides; negligible numbers become zero.
+/// First row of the last block that is not divided by a zero below the diagonal; negligible numbers are set to zero.
 fn first_of_block(a: &mut [f64], n: usize, open: usize) -> usize {
     for i in (1..open).rev() {
         let near = a[(i - 1) * n + i - 1].abs() + a[i * n + i].abs();
@@ -98,7 +99,8 @@ fn pair(a: &[f64], n: usize, open: usize) -> [Complex64; 2] {
     [(at(1, 1) + signed).into(), (at(1, 1) + other).into()]
 }
 
-/// Sum and product of the two shifts: the eigenvalues of the last block, or others where these have not led to an end.
+/// Sum and product of the two shifts: of the eigenvalues of the last block or, where these did not lead to
+/// convergence, of other numbers.
 fn shifts(a: &[f64], n: usize, open: usize, iterations: usize) -> (f64, f64) {
     let at = |i: usize, j: usize| a[(open - 2 + j) * n + open - 2 + i];
     if iterations.is_multiple_of(EXCEPTIONAL) {
@@ -109,7 +111,7 @@ fn shifts(a: &[f64], n: usize, open: usize, iterations: usize) -> (f64, f64) {
     (at(0, 0) + at(1, 1), at(0, 0) * at(1, 1) - at(0, 1) * at(1, 0))
 }
 
-/// A reflection of rows and columns k + 1 … that clears column k below the first of them.
+/// Reflection of rows and columns from k + 1 on that clears column k below row k + 1.
 struct Reduce<'a> {
     a: &'a mut [f64],
     n: usize,
@@ -186,7 +188,7 @@ fn subtract(y: &mut [f64], share: f64, x: &[f64]) {
     }
 }
 
-/// One sweep with two shifts over the block of rows `first` … `open` − 1.
+/// One sweep with two shifts over the block of rows `first` to `open` − 1.
 struct Sweep<'a> {
     a: &'a mut [f64],
     n: usize,

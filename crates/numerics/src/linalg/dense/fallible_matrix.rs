@@ -41,7 +41,7 @@ pub fn copy_of_vector<T: Scalar>(x: &DVector<T>, what: &str) -> Result<DVector<T
     Ok(DVector::from_vec(try_copy(x.as_slice(), what)?))
 }
 
-/// A matrix of given entries.
+/// A matrix with given entries.
 ///
 /// # Errors
 /// `OutOfMemory` naming `what`.
@@ -60,7 +60,7 @@ pub fn filled<T: Scalar>(
     Ok(a)
 }
 
-/// The conjugate transpose.
+/// The conjugate transpose of a matrix.
 ///
 /// # Errors
 /// `OutOfMemory` naming `what`.
@@ -70,7 +70,7 @@ pub fn adjoint<T: Scalar>(a: &DMatrix<T>, what: &str) -> Result<DMatrix<T>> {
     })
 }
 
-/// C ← C + factor A B, some columns at a time.
+/// C ← C + factor A B, computed some columns at a time.
 ///
 /// # Errors
 /// `StoppedByCaller`.
@@ -94,7 +94,7 @@ pub fn add_product<T: Scalar>(
     Ok(())
 }
 
-/// A B.
+/// The product A B.
 ///
 /// # Errors
 /// `OutOfMemory` naming `what`; `StoppedByCaller`.
@@ -104,9 +104,9 @@ pub fn product<T: Scalar>(a: &DMatrix<T>, b: &DMatrix<T>, what: &str, interrupt:
     Ok(c)
 }
 
-/// Replaces a Hermitian matrix by its inverse, by Gauss's and Jordan's elimination without interchanges, which is stable where the
-/// matrix is
-/// positive definite (Higham, Accuracy and Stability of Numerical Algorithms, 2002, §14.4). `false`: it is not, and its entries are lost.
+/// Replaces a Hermitian matrix by its inverse, by Gauss–Jordan elimination without interchanges, which is stable
+/// where the matrix is positive definite (Higham, Accuracy and Stability of Numerical Algorithms, 2002, §14.4).
+/// Returns `false` if it is not definite; its entries are then lost.
 ///
 /// # Errors
 /// `OutOfMemory` naming `what`; `StoppedByCaller`.

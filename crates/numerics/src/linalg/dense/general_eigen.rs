@@ -20,11 +20,11 @@ const AS_COMPLEX_UP_TO: usize = 600;
 
 const CONTEXT: &str = "the eigenvalues of a matrix";
 
-/// Eigenvalues and the matching vectors, column after column. Vectors are scaled to size 1.
+/// Eigenvalues, and vectors scaled to size 1, column after column.
 pub struct Pairs {
-    /// λ
+    /// Eigenvalues λ.
     pub values: Vec<Complex64>,
-    /// x with A x = λ x.
+    /// Vectors x with A x = λ x, column after column.
     pub vectors: Vec<Complex64>,
 }
 
@@ -87,7 +87,7 @@ pub fn values(a: &[Complex64], n: usize, interrupt: &Interrupt<'_>) -> Result<Ve
     Ok(values)
 }
 
-/// Largest entry of A X − X Λ, for vectors of size 1, over that of A.
+/// Error of eigenpairs: largest entry of A X − X Λ over that of A, for vectors of size 1.
 fn error(a: &[Complex64], n: usize, pairs: &Pairs) -> Result<f64> {
     let mut product = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
     complex_products::multiply(a, &pairs.vectors, &mut product, n);
@@ -221,7 +221,7 @@ mod tests {
                         a[(from + k / half) * n + from + k % half] = *z;
                     }
                 }
-                // The same after a reflection 1 − 2 v vᵀ, which hides the blocks.
+                // The matrix after a reflection 1 − 2 v vᵀ, which hides the blocks.
                 let v: Vec<f64> = (0..n).map(|k| (1.3 * k as f64).sin() + 0.2).collect();
                 let square: f64 = v.iter().map(|v| v * v).sum();
                 for transposed in [false, true] {

@@ -65,8 +65,8 @@ pub fn eigen(a: &mut [Complex64], n: usize, interrupt: &Interrupt<'_>) -> Result
     Ok((sorted, vectors))
 }
 
-/// Reduces A to T: its diagonal and the entries beside it. The vectors v of the reflections I − τ v vᴴ remain below
-/// the diagonal of A, their τ in `factors`.
+/// Reduces A to the tridiagonal T, given by its diagonal and the entries beside it. The vectors v of the reflections
+/// I − τ v vᴴ are stored below the diagonal of A, their τ in `factors`.
 fn tridiagonalise(
     a: &mut [Complex64],
     n: usize,
@@ -135,7 +135,7 @@ pub fn adjoint_in_place(a: &mut [Complex64], n: usize) {
     }
 }
 
-/// L of A = L Lᴴ in place of the lower triangle of the Hermitian column-major A; `false` where A is not positive
+/// Replaces the lower triangle of the Hermitian column-major A by L of A = L Lᴴ; `false` where A is not positive
 /// definite.
 ///
 /// # Errors
@@ -164,7 +164,7 @@ pub fn cholesky(a: &mut [Complex64], n: usize, interrupt: &Interrupt<'_>) -> Res
     Ok(true)
 }
 
-/// B ← L⁻¹ B, or L⁻ᴴ B.
+/// B ← L⁻¹ B, or B ← L⁻ᴴ B if `adjoint`.
 ///
 /// # Errors
 /// `OutOfMemory`; `StoppedByCaller`.
@@ -189,8 +189,8 @@ pub fn solve_triangular(
     Ok(())
 }
 
-/// Solves for some rows of B: the first half of them, their product with the triangle below them, and the other half; with an
-/// upper triangle from the last half on.
+/// Solves for some rows of B: one half of them, then the other half after the product with the triangle between;
+/// lower triangles begin with the first half, upper ones with the last.
 fn solve_rows((a, n): (&[Complex64], usize), upper: bool, rows: Range<usize>, b: &mut [Complex64]) {
     if rows.len() <= HERMITIAN_BLOCK {
         for x in b.chunks_exact_mut(n) {
@@ -211,7 +211,7 @@ fn solve_rows((a, n): (&[Complex64], usize), upper: bool, rows: Range<usize>, b:
     solve_rows((a, n), upper, last, b);
 }
 
-/// The same for one column, entry after entry.
+/// Solves for some rows of one column, entry after entry.
 fn solve_column((a, n): (&[Complex64], usize), upper: bool, rows: Range<usize>, x: &mut [Complex64]) {
     for i in 0..rows.len() {
         let k = if upper { rows.end - 1 - i } else { rows.start + i };

@@ -7,15 +7,15 @@
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 
-/// A square system and its memory.
+/// A square system that may be singular, with its memory.
 pub struct LeastSquares {
     n: usize,
     a: Vec<f64>,
     order: Vec<usize>,
-    /// First entries of the reflections, and the rank, of the matrix factorised last.
+    /// First entries of the reflections, and rank of the matrix factorised last.
     heads: Vec<f64>,
     rank: usize,
-    /// Squared lengths of the remaining parts of the columns.
+    /// Squared lengths of the columns' remaining parts.
     lengths: Vec<f64>,
     solution: Vec<f64>,
 }
@@ -115,7 +115,7 @@ impl LeastSquares {
         Ok(())
     }
 
-    /// The same with the matrix of the last [`Self::solve`].
+    /// Solves for another right-hand side b in place, with the matrix of the last [`Self::solve`].
     pub fn solve_again(&mut self, b: &mut [f64]) {
         let (n, rank) = (self.n, self.rank);
         let (r, open) = self.a.split_at(rank * n);
@@ -135,7 +135,7 @@ impl LeastSquares {
     }
 }
 
-/// y − v (vᵀy)/s with s = −pivot·v₁; v is a column but for its first entry.
+/// Applies a reflection: y ← y − v (vᵀy)/s with s = −pivot·v₁, where v is a column with another first entry.
 fn reflect(column: &[f64], (first, pivot): (f64, f64), y: &mut [f64]) {
     let (v, (head, rest)) = (&column[1..], y.split_at_mut(1));
     let along: f64 = first * head[0] + v.iter().zip(rest.iter()).map(|(v, y)| v * y).sum::<f64>();
@@ -146,7 +146,7 @@ fn reflect(column: &[f64], (first, pivot): (f64, f64), y: &mut [f64]) {
     }
 }
 
-/// R₁⁻¹ on the first `rank` entries of b, in place.
+/// Solves R₁ x = b in place for the first `rank` entries of b.
 fn back(r: &[f64], n: usize, rank: usize, b: &mut [f64]) {
     for k in (0..rank).rev() {
         b[k] /= r[k * n + k];

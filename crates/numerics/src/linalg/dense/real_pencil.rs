@@ -19,11 +19,12 @@ const CONTEXT: &str = "the eigenvalues of a matrix";
 /// Kind: rounding.
 const WRONG: f64 = 1e-13;
 
-/// λ, rising, and φ with φᵀ M φ = 1, column after column.
+/// Eigenvalues λ, rising; and vectors φ with φᵀ M φ = 1, column after column.
 type Found = (Vec<f64>, DMatrix<Complex64>);
 
-/// The pairs by M = L Lᵀ; `None` where a matrix is not real, M is not definite or its smallest pivot is not above a share `regular` of
-/// the largest, or the pairs are not right. The interrupt is checked before each step, not within.
+/// The eigenpairs by M = L Lᵀ; `None` where a matrix is not real, M is not definite, its smallest pivot is below a
+/// share `regular` of the largest, or the pairs are not accurate. The interrupt is checked before each step, not
+/// within.
 ///
 /// # Errors
 /// `OutOfMemory`; `StoppedByCaller`.
@@ -95,7 +96,8 @@ pub fn with_definite_mass(
     Ok(Some((values, DMatrix::from_vec(n, n, vectors))))
 }
 
-/// Largest entry of A X − X Λ over that of A; infinite where a value is not above the one before.
+/// Error of eigenpairs: largest entry of A X − X Λ over that of A; infinite where a value is not above the one
+/// before.
 fn residual(a: &[f64], (values, x): (&[f64], &[f64]), n: usize) -> Result<f64> {
     let mut product = try_vec(n * n, 0.0, CONTEXT)?;
     matmul(

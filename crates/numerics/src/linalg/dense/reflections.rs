@@ -21,8 +21,8 @@ const COLUMNS: usize = 64;
 
 const CONTEXT: &str = "the eigenvalues of a matrix";
 
-/// X ← H₀ H₁ … H_{n−2} X with H_j = I − τ_j v_j v_jᴴ. The vector v_j is column j of the column-major `a` of order n below its
-/// diagonal; X has n rows. `progress` is told the share of the work that is done.
+/// X ← H₀ H₁ … H_{n−2} X with H_j = I − τ_j v_j v_jᴴ. The vector v_j is column j of the column-major `a` of order n
+/// below its diagonal; X has n rows. `progress` receives the completed share of the work.
 ///
 /// # Errors
 /// `OutOfMemory`; `StoppedByCaller`.
@@ -75,7 +75,7 @@ pub fn apply(
     Ok(())
 }
 
-/// T of the vectors v, column after column.
+/// Triangle T of a block of reflections with the vectors v, column after column.
 fn triangle(v: &[Complex64], factors: &[Complex64], t: &mut [Complex64]) {
     let width = factors.len();
     let rows = v.len() / width;

@@ -18,8 +18,9 @@ const MOST_ITERATIONS: usize = 60;
 /// Kind: block.
 const ROWS: usize = 128;
 
-/// Eigenvalues in place of the diagonal d, with e beside it, the last number of which is memory; the rotations are applied to the
-/// columns of z, which has some rows of the identity, or all. `progress` is told the share of the work that is done.
+/// Replaces the diagonal d by the eigenvalues. `e` holds the entries beside the diagonal, and one more number of
+/// memory. The rotations are applied to the columns of z, which holds some rows of the identity, or all. `progress`
+/// receives the completed share of the work.
 ///
 /// # Errors
 /// `NoConvergence`, `OutOfMemory`; `StoppedByCaller`.
@@ -56,7 +57,8 @@ pub fn diagonalise(
     Ok(())
 }
 
-/// One iteration on rows l to m; the (c, s) of the rotations of columns i and i + 1 from the last one down to that returned.
+/// One QL iteration on rows l to m. `rotations` receives (c, s) of the rotations of columns i and i + 1, for i from
+/// the last one down to the returned index.
 fn iterate((d, e): (&mut [f64], &mut [f64]), (l, m): (usize, usize), rotations: &mut [(f64, f64)]) -> usize {
     let g = (d[l + 1] - d[l]) / (2.0 * e[l]);
     let r = g.hypot(1.0);
@@ -86,7 +88,7 @@ fn iterate((d, e): (&mut [f64], &mut [f64]), (l, m): (usize, usize), rotations: 
     l
 }
 
-/// Rotations of columns i and i + 1 for i from `range.1` − 1 down to `range.0`.
+/// Applies rotations of columns i and i + 1, for i from `range.1` − 1 down to `range.0`.
 struct Rotate<'a> {
     rotations: &'a [(f64, f64)],
     range: (usize, usize),

@@ -5,24 +5,24 @@ use crate::linalg::sparse_storage::row_index::{Row, narrow, wide};
 
 const CONTEXT: &str = "the graph of a sparse matrix";
 
-/// No vertex.
+/// Mark for no vertex.
 const NONE: Row = Row::MAX;
 
 /// A graph without loops.
 #[derive(Debug)]
 pub struct Graph {
-    /// Start of the neighbours of each vertex, and the end of the last.
+    /// Start of the neighbours of each vertex; and the end of the last ones.
     starts: Vec<usize>,
     neighbours: Vec<Row>,
-    /// Edges that were merged into each.
+    /// Number of edges that were merged into each edge.
     edges: Vec<u32>,
-    /// Rows of the matrix that each vertex stands for.
+    /// Number of rows of the matrix that each vertex represents.
     weights: Vec<u32>,
 }
 
 impl Graph {
-    /// The graph of a matrix from its lower triangle, in which rows with equal patterns are one vertex, such as those of a
-    /// node of finite elements; with the vertex of each row.
+    /// The graph of a matrix from its lower triangle, with the vertex of each row. Rows with equal patterns, such as
+    /// those of a node of finite elements, are one vertex.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -75,7 +75,7 @@ impl Graph {
         Ok((graph, of_row))
     }
 
-    /// Number of vertices.
+    /// Number of vertices of the graph.
     #[must_use]
     pub fn vertices(&self) -> usize {
         self.weights.len()
@@ -94,13 +94,14 @@ impl Graph {
             .map(|&u| wide(u))
     }
 
-    /// Rows that a vertex stands for.
+    /// Number of rows that a vertex represents.
     #[must_use]
     pub fn weight(&self, v: usize) -> i64 {
         self.weights[v].into()
     }
 
-    /// The graph of pairs of neighbours, those with the most edges between them first, and the pair of each vertex.
+    /// The graph in which pairs of neighbours are merged, those with the most edges between them first; and the pair
+    /// of each vertex.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -184,7 +185,7 @@ impl Graph {
         Ok(part)
     }
 
-    /// Start of the neighbours that come after each vertex, and these neighbours: the pattern of a lower triangle.
+    /// Pattern of a lower triangle: start of the later neighbours of each vertex, and these neighbours.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -202,7 +203,7 @@ impl Graph {
     }
 }
 
-/// Numbers below n, each once, in an order without a pattern. One seed gives one order; it is another one afterwards.
+/// The numbers below n in an irregular order. A seed determines the order, and is changed by the call.
 ///
 /// # Errors
 /// `OutOfMemory`.

@@ -20,14 +20,14 @@ const LEAF: usize = 100;
 /// Kind: tuned; measured on: not recorded.
 const MOST: f64 = 0.9;
 
-/// A part of the graph: its vertices, and their first place in the order.
+/// A part of the graph: its vertices, and their first position in the order.
 struct Piece {
     graph: Graph,
     vertices: Vec<Row>,
     place: usize,
 }
 
-/// The order of elimination of a symmetric matrix by the pattern of its lower triangle: the row of each place.
+/// The order of elimination of a symmetric matrix, from the pattern of its lower triangle: the row at each position.
 ///
 /// # Errors
 /// `OutOfMemory`; `StoppedByCaller`.
@@ -90,7 +90,7 @@ pub fn order(col_ptr: &[usize], rows: &[usize], interrupt: &Interrupt<'_>) -> Re
     expanded(&order, &of_row)
 }
 
-/// The place of each vertex by approximate minimum degrees.
+/// The position of each vertex by approximate minimum degrees.
 fn by_degrees(graph: &Graph) -> Result<Vec<usize>> {
     let n = graph.vertices();
     let no_memory = || Error::out_of_memory(CONTEXT);
@@ -105,7 +105,7 @@ fn by_degrees(graph: &Graph) -> Result<Vec<usize>> {
     Ok(place)
 }
 
-/// The row of each place from the vertex of each place.
+/// The row at each position, from the vertex at each position.
 fn expanded(order: &[Row], of_row: &[Row]) -> Result<Vec<usize>> {
     let mut starts = try_vec(order.len() + 1, 0, CONTEXT)?;
     for &v in of_row {

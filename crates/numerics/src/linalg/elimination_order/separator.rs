@@ -36,13 +36,13 @@ const BALANCE: f64 = 0.1;
 const PASSES: u8 = 8;
 const SEPARATOR_PATIENCE: usize = 100;
 
-/// Part in which a vertex is: 0, 1, or the separator between them.
+/// Part that contains a vertex: 0, 1, or the separator between them.
 pub type Part = u8;
 
-/// The separator.
+/// Mark of the separator.
 pub const SEPARATOR: Part = 2;
 
-/// The part of each vertex: no edge joins 0 and 1. The same graph has the same parts every time.
+/// Divides a graph: the part of each vertex, such that no edge joins parts 0 and 1. Equal graphs are divided equally.
 ///
 /// # Errors
 /// `OutOfMemory`; `StoppedByCaller`.
@@ -86,7 +86,7 @@ fn best_of(graph: &Graph, repeated_below: usize, seed: &mut u64, interrupt: &Int
     Ok(best.map_or_else(Vec::new, |(_, parts)| parts))
 }
 
-/// Part 0 grows from a vertex to half of the weight; its vertices next to the rest separate it.
+/// Grows part 0 from a vertex to half of the weight; its vertices next to the rest become the separator.
 fn grown(graph: &Graph, start: usize) -> Result<Vec<Part>> {
     let n = graph.vertices();
     let all: i64 = (0..n).map(|v| graph.weight(v)).sum();
@@ -121,19 +121,19 @@ fn grown(graph: &Graph, start: usize) -> Result<Vec<Part>> {
     Ok(parts)
 }
 
-/// Parts of a graph while vertices move.
+/// Parts of a graph while vertices are moved between them.
 struct Cut<'a> {
     graph: &'a Graph,
     parts: Vec<Part>,
-    /// Weight of both parts and of the separator.
+    /// Weights of part 0, part 1 and the separator.
     weights: [i64; 3],
-    /// Weight of the neighbours of each vertex in part 0 and 1.
+    /// For each vertex, the weights of its neighbours in part 0 and part 1.
     beside: Vec<[i64; 2]>,
-    /// Pass in which a vertex left the separator last.
+    /// For each vertex, the pass in which it left the separator last.
     left: Vec<u8>,
-    /// Gain and vertex of moves into part 0 and 1; those that changed since are passed over.
+    /// Moves into part 0 and part 1, as (gain, vertex); those outdated since are passed over.
     moves: [BinaryHeap<(i64, Row)>; 2],
-    /// Vertex and part that it was in, move after move.
+    /// Log of the moves: vertex, and the part that it was in.
     log: Vec<(Row, Part)>,
 }
 
@@ -161,7 +161,8 @@ impl<'a> Cut<'a> {
         Ok(state)
     }
 
-    /// Weight of the separator, more where the parts differ, far more where one is too large.
+    /// Cost of the division: weight of the separator, increased where the parts differ, and much where one is too
+    /// large.
     fn cost(&self) -> f64 {
         let [a, b, cut] = self.weights.map(|w| w as f64);
         let beyond = (a.max(b) - SEPARATOR_LARGEST * (a + b + cut)).max(0.0);
@@ -178,8 +179,8 @@ impl<'a> Cut<'a> {
         Ok(())
     }
 
-    /// Moves vertices out of the separator, each once, also where it grows for a while, and goes back to its best. `false`
-    /// where none was better.
+    /// Moves vertices out of the separator, each once, even where the separator grows for a while, and returns to the
+    /// best division. `false` where none was better than the first.
     fn pass(&mut self, number: u8) -> Result<bool> {
         self.log.clear();
         self.moves.iter_mut().for_each(BinaryHeap::clear);
@@ -210,7 +211,7 @@ impl<'a> Cut<'a> {
         Ok(least < first)
     }
 
-    /// Change of the separator's weight by a move, upwards for a smaller one.
+    /// Decrease of the separator's weight by a move.
     fn gain(&self, v: usize, part: usize) -> i64 {
         self.graph.weight(v) - self.beside[v][1 - part]
     }
@@ -227,7 +228,7 @@ impl<'a> Cut<'a> {
         Ok(())
     }
 
-    /// The allowed move with the largest gain, into the smaller part where both are equal.
+    /// Vertex and part of the allowed move with the largest gain; into the smaller part where gains are equal.
     fn next(&mut self, limit: i64, number: u8) -> Option<(usize, usize)> {
         let mut best: Option<(i64, i64, usize, usize)> = None;
         for part in 0..2 {

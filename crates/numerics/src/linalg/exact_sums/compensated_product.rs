@@ -15,12 +15,12 @@ use pulp::{Arch, Simd, WithSimd};
 /// Kind: block.
 const OPERATIONS: u64 = 8;
 
-/// Real and imaginary parts of the rows of Σ A x.
+/// Rows of a sum of products A x, as compensated sums of real and imaginary parts.
 #[derive(Debug)]
 pub struct Rows(Vec<[Sum; 2]>);
 
 impl Rows {
-    /// n zeros.
+    /// Rows of zeros.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -28,7 +28,7 @@ impl Rows {
         Ok(Self(try_vec(n, [Sum::default(); 2], "a product")?))
     }
 
-    /// Adds A x.
+    /// Adds the product A x.
     ///
     /// # Errors
     /// `StoppedByCaller`.
@@ -39,7 +39,7 @@ impl Rows {
         Ok(())
     }
 
-    /// The rows, rounded.
+    /// Writes the rows, rounded, to `y`.
     pub fn rounded<T: Entry>(&self, y: &mut [T]) {
         for (y, [re, im]) in y.iter_mut().zip(&self.0) {
             *y = T::of(Complex64::new(re.rounded(), im.rounded()));

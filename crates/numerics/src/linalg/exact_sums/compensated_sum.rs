@@ -3,7 +3,7 @@
 
 #![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
 
-/// A sum of products and the rounding of it.
+/// A sum of products, with its accumulated rounding error.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sum {
     value: f64,
@@ -11,7 +11,7 @@ pub struct Sum {
 }
 
 impl Sum {
-    /// self += a b
+    /// self ← self + a b, with its rounding error.
     #[inline(always)]
     pub fn add(&mut self, a: f64, b: f64) {
         let product = a * b;
@@ -21,7 +21,7 @@ impl Sum {
         self.value = sum;
     }
 
-    /// The rounded sum.
+    /// The sum, rounded once.
     #[must_use]
     #[inline(always)]
     pub fn rounded(self) -> f64 {

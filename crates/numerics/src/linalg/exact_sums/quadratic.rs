@@ -29,7 +29,7 @@ impl Sum {
         self.add(product);
     }
 
-    /// Adds a·b of a sum a, to the precision of this one.
+    /// Adds a·b, where a is a sum with its own rounding errors.
     fn add_multiple(&mut self, a: Self, b: f64) {
         self.add_product(a.value, b);
         self.error += a.error * b;
@@ -40,8 +40,8 @@ impl Sum {
     }
 }
 
-/// a·b − product exactly, by halves of the factors (Dekker 1971, doi:10.1007/BF01397083). A fused multiply-add
-/// gives the same, but is a slow call on processors that are not known to have one.
+/// Rounding error a·b − product, exactly, by splitting the factors (Dekker 1971, doi:10.1007/BF01397083). A fused
+/// multiply-add gives the same number, but is a slow call on processors that are not known to have it.
 #[inline(always)]
 fn rounding_of(a: f64, b: f64, product: f64) -> f64 {
     let halves = |x: f64| {
@@ -66,7 +66,8 @@ pub fn terms(a: &Csc, x: &[Complex64]) -> f64 {
     x.iter().enumerate().map(|(j, x)| x.norm() * column(j)).sum()
 }
 
-/// The same from the moduli of A, on a pattern, and of x, where many motions are asked for.
+/// Sum of the moduli of the terms of xᴴ A x, from the moduli of A (on a pattern) and of x, where many motions are
+/// evaluated.
 #[must_use]
 pub fn terms_of_moduli(pattern: &Csc, of_matrix: &[f64], of_vector: &[f64]) -> f64 {
     let mut sum = 0.0;
@@ -82,7 +83,8 @@ pub fn terms_of_moduli(pattern: &Csc, of_matrix: &[f64], of_vector: &[f64]) -> f
 /// Kind: tuned; measured on: not recorded.
 const CANCELLED: f64 = 1e4;
 
-/// xᴴ A x of a Hermitian matrix to a dozen digits, which costs a quarter of all of them where the terms do not cancel.
+/// xᴴ A x of a Hermitian matrix to about twelve digits. Where the terms do not cancel, this takes a quarter of the
+/// time of all digits.
 #[must_use]
 pub fn about_quadratic(a: &Csc, x: &[Complex64]) -> f64 {
     let (mut form, mut size) = (0.0, 0.0);
@@ -102,7 +104,7 @@ pub fn about_quadratic(a: &Csc, x: &[Complex64]) -> f64 {
     quadratic(a, x)
 }
 
-/// xᴴ A x of a Hermitian matrix.
+/// xᴴ A x of a Hermitian matrix to all digits.
 #[must_use]
 pub fn quadratic(a: &Csc, x: &[Complex64]) -> f64 {
     let mut form = Sum::default();
@@ -139,7 +141,7 @@ impl ComplexSum {
         }
     }
 
-    /// Adds a·b of a sum a, to the precision of this one.
+    /// Adds a·b, where a is a sum with its own rounding errors.
     pub fn add_multiple(&mut self, a: Self, b: Complex64) {
         self.re.add_multiple(a.re, b.re);
         self.re.add_multiple(a.im, -b.im);
@@ -155,7 +157,7 @@ impl ComplexSum {
         -self.total()
     }
 
-    /// The sum.
+    /// Value of the sum.
     #[must_use]
     pub fn total(self) -> Complex64 {
         Complex64::new(self.re.total(), self.im.total())
@@ -269,7 +271,7 @@ impl Form<'_> {
     }
 }
 
-/// y += A x of a matrix given by its values at the entries of a pattern.
+/// y ← y + A x, for a matrix given by its values at the entries of a pattern.
 pub fn product(pattern: &Csc, values: &[Complex64], x: &[Complex64], y: &mut [ComplexSum]) {
     for (j, &xj) in x.iter().enumerate() {
         for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {

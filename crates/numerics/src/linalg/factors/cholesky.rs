@@ -40,14 +40,14 @@ const FILLED: usize = 4;
 /// Kind: tuned; measured on: not recorded.
 const SAVED: f64 = 0.9;
 
-/// An order of elimination, and the shape of its factors.
+/// Choice of the order of elimination.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Order {
-    /// By approximate minimum degrees.
+    /// Order of approximate minimum degrees.
     Degrees,
-    /// By nested dissection.
+    /// Order of nested dissection.
     Dissection,
-    /// By dissection where L has many entries and clearly fewer by it, by degrees elsewhere.
+    /// Nested dissection where L has many entries, and clearly fewer by it; else minimum degrees.
     Smaller,
 }
 
@@ -90,7 +90,7 @@ fn analysed(
     by(SymmetricOrdering::Amd)
 }
 
-/// The shape of the factors in the order of minimum degrees.
+/// Structure of the factors in the order of minimum degrees.
 pub(crate) fn analysed_by_degrees(
     pattern: SymbolicSparseColMatRef<'_, usize>,
     interrupt: &Interrupt<'_>,
@@ -106,7 +106,7 @@ pub fn entries_of_factor(a: &Csc) -> Result<usize> {
     entries(a, Order::Smaller)
 }
 
-/// The same by minimum degrees.
+/// Number of entries of L for a matrix with the pattern of `a`, in the order of minimum degrees.
 ///
 /// # Errors
 /// `OutOfMemory`.
@@ -128,8 +128,8 @@ pub struct Cholesky<T> {
 }
 
 impl<T: Entry> Cholesky<T> {
-    /// Factors A; `None` if it is not positive definite. `allow` is asked with the bytes that are needed before they
-    /// are allocated.
+    /// Factors A; `None` if it is not positive definite. `allow` is called with the number of bytes needed before
+    /// they are allocated.
     ///
     /// # Errors
     /// `OutOfMemory`, that of `allow`; `StoppedByCaller`.
@@ -141,7 +141,7 @@ impl<T: Entry> Cholesky<T> {
         Ok(Self::or_bad_pivot(a, allow, interrupt)?.ok())
     }
 
-    /// The same; the inner error is the number of a pivot that is not positive.
+    /// Factors A as `new` does; the inner error is the index of a pivot that is not positive.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -212,11 +212,11 @@ impl<T: Entry> Cholesky<T> {
     }
 }
 
-/// Factors of a definite matrix in the numbers that it has.
+/// Factors of a definite matrix, real or complex.
 pub enum Definite {
-    /// A real symmetric matrix.
+    /// Factors of a real symmetric matrix.
     Real(Cholesky<f64>),
-    /// A complex Hermitian one.
+    /// Factors of a complex Hermitian matrix.
     Complex(Cholesky<Complex64>),
 }
 

@@ -76,8 +76,8 @@ impl Factor {
         Ok(Self { kind })
     }
 
-    /// About the bytes of the factors of a matrix with the pattern of `a`, which should be symmetric: pivots may add
-    /// more.
+    /// Approximate number of bytes of the factors of a matrix with the pattern of `a`, which should be symmetric;
+    /// pivoting may add some.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -90,7 +90,7 @@ impl Factor {
         Ok(entries * size_of::<Complex64>())
     }
 
-    /// Factors `a`.
+    /// Factors the matrix `a`.
     ///
     /// # Errors
     /// `Singular`, `OutOfMemory`; `StoppedByCaller`.
@@ -170,7 +170,7 @@ impl Sparse {
         Ok(())
     }
 
-    /// Ordering and structure of the factors, which matrices of one pattern share.
+    /// Finds the order of elimination and the structure of the factors, which matrices of one pattern share.
     fn analyse(&mut self, a: &Csc) -> Result<()> {
         const CONTEXT: &str = "a sparse factorisation";
         self.col_ptr = try_vec(a.col_ptr.len(), 0, CONTEXT)?;

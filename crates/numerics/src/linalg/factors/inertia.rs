@@ -20,17 +20,17 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "a count of eigenvalues";
 
-/// Eigenvalues of a pencil below a value.
+/// Number of eigenvalues of a pencil below a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Below {
-    /// Their number.
+    /// Number of eigenvalues below the value.
     pub count: usize,
-    /// Entries of the factor L that told it.
+    /// Number of entries of the factor L that was computed.
     pub entries: usize,
 }
 
-/// Number of eigenvalues of K x = λ M x below σ, of which the lower triangles are used, M positive definite; `None` where a pivot is zero.
-/// `allow` is asked with the bytes that are needed before they are allocated.
+/// Number of eigenvalues of K x = λ M x below σ, from the lower triangles of K and M, where M is positive definite;
+/// `None` where a pivot is zero. `allow` is called with the number of bytes needed before they are allocated.
 ///
 /// # Errors
 /// `OutOfMemory`, that of `allow`; `StoppedByCaller`.
@@ -81,7 +81,7 @@ fn negative_pivots<T: Entry>(
     Ok(signs(&symbolic, &values).map(|count| Below { count, entries }))
 }
 
-/// Number of negative entries of D, the diagonals of the columns of the factor; `None` where one is not finite.
+/// Number of negative entries of D, which are the diagonals of the factor's columns; `None` where one is not finite.
 fn signs<T: Entry>(symbolic: &SymbolicCholesky<usize>, values: &[T]) -> Option<usize> {
     let mut negative = 0;
     let mut see = |d: f64| {

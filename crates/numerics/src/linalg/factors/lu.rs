@@ -42,7 +42,7 @@ const CONTEXT: &str = "an LU factorisation";
 struct Blocked {
     forward: Vec<usize>,
     backward: Vec<usize>,
-    /// Permutation of one panel, and its interchanges.
+    /// Permutation of one panel; and its interchanges.
     panel: Vec<usize>,
     swaps: Vec<usize>,
     scratch: MemBuffer,
@@ -55,7 +55,7 @@ pub struct Lu<T> {
     a: Vec<T>,
     pivots: Vec<usize>,
     blocked: Option<Blocked>,
-    /// Memory of small matrices: a column, and all right sides with one row more.
+    /// Memory for small matrices: one column, and all right-hand sides with one row more.
     small: Vec<T>,
 }
 
@@ -260,8 +260,8 @@ impl<T: Scalar> Lu<T> {
     }
 }
 
-/// A permutation, by which position k takes row `forward[k]`, as interchanges: position k takes the row at position
-/// `rows[k]`. `position` is memory, and holds the inverse permutation at the end.
+/// A permutation by which position k receives row `forward[k]`, as a sequence of interchanges: position k is
+/// exchanged with position `rows[k]`. `position` is memory, and holds the inverse permutation at the end.
 fn interchanges(forward: &[usize], position: &mut [usize], rows: &mut [usize]) {
     for (k, p) in position.iter_mut().enumerate() {
         *p = k;

@@ -23,21 +23,21 @@ pub(crate) struct BelowAll {
     pub place: Place,
 }
 
-/// Where the shift is.
+/// Position of the shift among the eigenvalues.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Place {
-    /// Next to zero, below all eigenvalues.
+    /// Next to zero; all eigenvalues are above it.
     First,
-    /// Below an eigenvalue below zero.
+    /// Below a negative eigenvalue; all eigenvalues are above it.
     Further,
-    /// Next to zero, and not below all eigenvalues: K is negative on motions without mass, too.
+    /// Next to zero, with eigenvalues below it: K is negative on motions without mass, too.
     Within,
-    /// Between eigenvalues.
+    /// Between eigenvalues of the pencil.
     Inside,
 }
 
-/// Finds a shift below all eigenvalues, from `shift` on, so that the lowest eigenvalues belong to the largest of the operator
-/// also where K is negative in some direction.
+/// Finds a shift below all eigenvalues, starting from `shift`, so that the lowest eigenvalues belong to the largest
+/// ones of the operator also where K is negative in some direction.
 pub(crate) fn below_all(k: &Csc, m: &Csc, shift: f64, interrupt: &Interrupt<'_>) -> Result<BelowAll> {
     let factors = |sigma: f64| definite_inverse(k, (sigma, m), interrupt);
     if let Some(inverse) = factors(shift)? {
@@ -70,7 +70,7 @@ pub(crate) fn below_all(k: &Csc, m: &Csc, shift: f64, interrupt: &Interrupt<'_>)
     })
 }
 
-/// The inverse of K + σM; `None` where that is not positive definite.
+/// The inverse of K + σM; `None` where this matrix is not positive definite.
 pub(crate) fn definite_inverse(k: &Csc, (shift, m): (f64, &Csc), interrupt: &Interrupt<'_>) -> Result<Option<Inverse>> {
     let n = k.rows;
     if n > SHIFTED_INVERSE_DENSE_UP_TO {
@@ -91,9 +91,9 @@ const SHIFTED_INVERSE_DENSE_UP_TO: usize = 200;
 
 /// Factors of K + σM.
 pub enum Inverse {
-    /// Definite, in half the memory and less.
+    /// Factors of a definite matrix, in at most half the memory.
     Definite(Definite),
-    /// Small, or indefinite as with springs of negative stiffness.
+    /// Factors of a small matrix, or an indefinite one as with springs of negative stiffness.
     General(Factor),
 }
 

@@ -25,18 +25,18 @@ type Column = [[f64; SMALL_LU_WIDTH]; SMALL_LU_BLOCKS];
 
 const ZERO: Column = [[0.0; SMALL_LU_WIDTH]; SMALL_LU_BLOCKS];
 
-/// Factors P A = L U.
+/// Factors P A = L U of a small real matrix.
 pub struct SmallLu {
     arch: Arch,
     n: usize,
-    /// A, then U, with what remains of A below it.
+    /// Columns of A before, and of U after the factorisation, with the part of A that is left below.
     upper: Vec<Column>,
-    /// L without its diagonal.
+    /// Columns of L without its diagonal.
     lower: Vec<Column>,
     pivots: [usize; SMALL_LU_LARGEST],
     /// Reciprocals of the diagonal of U.
     inverses: [f64; SMALL_LU_LARGEST],
-    /// Row of A in each row of P A.
+    /// Row of A that is in each row of P A.
     order: [usize; SMALL_LU_LARGEST],
 }
 
@@ -69,12 +69,13 @@ impl SmallLu {
         }
     }
 
-    /// A column to fill.
+    /// Column j of the matrix, to be filled.
     pub fn column(&mut self, j: usize) -> &mut [f64] {
         &mut self.upper[j].as_flattened_mut()[..self.n]
     }
 
-    /// Fills in [A·a, c·b; row], of the order set last, from the columns of A and c one after the other.
+    /// Fills in the bordered matrix [A·a, c·b; row], of the order set last, from the columns of A and c, one after
+    /// the other.
     pub fn fill_bordered(&mut self, matrix: &[f64], (a, b): (f64, f64), column: &[f64], row: &[f64]) {
         let upper = &mut self.upper[..self.n];
         self.arch.dispatch(Fill(upper, matrix, (a, b), column, row));
@@ -146,7 +147,7 @@ impl SmallLu {
     }
 }
 
-/// Fills in a bordered matrix.
+/// Fills in the bordered matrix of `fill_bordered`.
 struct Fill<'a>(&'a mut [Column], &'a [f64], (f64, f64), &'a [f64], &'a [f64]);
 
 impl WithSimd for Fill<'_> {
@@ -177,7 +178,7 @@ impl WithSimd for Fill<'_> {
     }
 }
 
-/// Factors columns of B blocks; the pivot that is zero or not finite, with its size, if there is one.
+/// Factors a matrix whose columns have B blocks. The error is a pivot that is zero or not finite, with its size.
 struct Factor<'a, const B: usize>(&'a mut [Column], &'a mut [Column], &'a mut [usize], &'a mut [f64]);
 
 impl<const B: usize> WithSimd for Factor<'_, B> {
@@ -281,7 +282,7 @@ impl<const B: usize> WithSimd for Solve<'_, B> {
     }
 }
 
-/// x −= factor·column
+/// x ← x − factor·column, for one block of a column.
 #[inline(always)]
 fn subtract<S: Simd>(simd: S, x: &mut [f64; SMALL_LU_WIDTH], factor: f64, column: &[f64; SMALL_LU_WIDTH]) {
     let ((x, x_rest), (column, rest)) = (S::as_mut_simd_f64s(x), S::as_simd_f64s(column));
@@ -294,7 +295,8 @@ fn subtract<S: Simd>(simd: S, x: &mut [f64; SMALL_LU_WIDTH], factor: f64, column
     }
 }
 
-/// Subtracts multiples of l, the column of pivot k, from the last R blocks of the columns beyond; from all where R is B.
+/// Subtracts multiples of l, the column of pivot k, from the last R blocks of the later columns; from all blocks
+/// where R is B.
 #[inline(always)]
 fn eliminate<S: Simd, const R: usize>(simd: S, columns: &mut [Column], l: &[[f64; SMALL_LU_WIDTH]], k: usize) {
     let first = l.len().saturating_sub(R);

@@ -23,36 +23,38 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the reduced structure";
 
-/// A vector by its entries.
+/// A sparse vector: row and value of each entry.
 pub type SparseVector = Vec<(usize, Complex64)>;
 
-/// |xᴴ y|
+/// Modulus |xᴴ y| of the product of two columns.
 fn energy<T: Entry>(x: &[T], y: &[T]) -> f64 {
     let product = |(x, y): (&T, &T)| x.complex().conj() * y.complex();
     x.iter().zip(y).map(product).sum::<Complex64>().norm()
 }
 
-/// A growing basis.
+/// A growing basis, orthonormal in the inner product of A = K + σM.
 pub struct BlockKrylov<T> {
     factor: Cholesky<T>,
-    /// K, σ and M of A = K + σM: the sum would round what M has more of than K in the smallest motions.
+    /// K, σ and M of A = K + σM. They are kept apart because their sum would round the digits in which M exceeds K
+    /// for the smallest motions.
     stiffness: Triangle<T>,
     shift: f64,
     mass: Triangle<T>,
-    /// C, if its images extend the basis, too.
+    /// Damping matrix C, if its images extend the basis, too.
     damping: Option<Csc>,
     n: usize,
-    /// Columns of n numbers.
+    /// Columns of the basis, n numbers each.
     basis: Vec<T>,
     /// First column whose image the basis may lack.
     last: usize,
-    /// Vᴴ O V per operator, column after column, of the present order.
+    /// Per operator the reduced matrix Vᴴ O V, column after column, of the current order.
     reduced: Vec<Vec<Complex64>>,
-    /// Parts of the images of the columns from `last` on that the basis does not hold: n numbers per column, operator after operator.
+    /// Parts of the images, of the columns from `last` on, that are not in the basis: n numbers per column, operator
+    /// after operator.
     rest: Vec<T>,
-    /// Norms of the images.
+    /// Norms of the images of the columns from `last` on.
     sizes: Vec<f64>,
-    /// Their Gram matrix in the inner product of A.
+    /// Gram matrix of the parts of images in `rest`, in the inner product of A.
     gram: Vec<Complex64>,
 }
 
@@ -88,43 +90,44 @@ impl<T: Entry> BlockKrylov<T> {
         self.basis.len() / self.n.max(1)
     }
 
-    /// First column whose image the basis may lack: that of the last block which took all candidates.
+    /// First column whose image the basis may lack: the first one of the last block that took all candidates.
     #[must_use]
     pub fn last(&self) -> usize {
         self.last
     }
 
-    /// Columns that the next block has at most.
+    /// Largest number of columns of the next block.
     #[must_use]
     pub fn next_columns(&self) -> usize {
         self.rest.len() / self.n.max(1)
     }
 
-    /// Vᴴ O V of an operator, mass or damping, column after column.
+    /// Reduced matrix Vᴴ O V of an operator, mass or damping, column after column.
     #[must_use]
     pub fn reduced(&self, operator: usize) -> &[Complex64] {
         &self.reduced[operator]
     }
 
-    /// EᴴAE of the images of the columns from [`Self::last`] on, operator after operator.
+    /// Gram matrix EᴴAE of those parts E of the images, of the columns from [`Self::last`] on, that are not in the
+    /// basis; operator after operator.
     #[must_use]
     pub fn gram(&self) -> &[Complex64] {
         &self.gram
     }
 
-    /// The basis, column after column, which [`Self::give_basis`] returns before more blocks are asked for.
+    /// Takes the basis out, column after column. [`Self::give_basis`] must return it before further blocks are added.
     pub fn take_basis(&mut self) -> Vec<T> {
         core::mem::take(&mut self.basis)
     }
 
-    /// The basis as it was taken.
+    /// Returns the basis that was taken.
     pub fn give_basis(&mut self, basis: Vec<T>) {
         self.basis = basis;
     }
 
-    /// Largest part that the basis does not hold, relative and in the norm of A, of the error by rounding of solutions whose
-    /// result would be motions V z, over `probes` of coordinates z, one after the other. Errors within the basis change none
-    /// of its motions.
+    /// Rounding error of solutions, as far as it leads out of the basis: the largest part in the norm of A, relative,
+    /// for solutions that would be the motions V z of the coordinates `probes`, one after the other. Errors within
+    /// the basis do not matter.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
@@ -153,12 +156,12 @@ impl<T: Entry> BlockKrylov<T> {
         Ok(worst)
     }
 
-    /// y = A x for columns of n numbers.
+    /// y ← A x for columns of n numbers.
     fn weigh(&self, x: &[T], y: &mut [T], interrupt: &Interrupt<'_>) -> Result<()> {
         multiply(&[(1.0, &self.stiffness), (self.shift, &self.mass)], x, y, interrupt)
     }
 
-    /// y = A x for one column, rounded once.
+    /// y ← A x for one column, rounded once.
     fn weigh_exactly(&self, x: &[T], y: &mut [T], interrupt: &Interrupt<'_>) -> Result<()> {
         let mut rows = Rows::new(self.n)?;
         rows.add(&self.stiffness, x, interrupt)?;
@@ -171,7 +174,7 @@ impl<T: Entry> BlockKrylov<T> {
         Ok(())
     }
 
-    /// y = M x or C x, or with the adjoint, for columns of n numbers.
+    /// y ← M x or C x, or their adjoints, for columns of n numbers.
     fn image(&self, operator: usize, adjoint: bool, x: &[T], y: &mut [T], interrupt: &Interrupt<'_>) -> Result<()> {
         let a = match &self.damping {
             Some(damping) if operator > 0 => damping,
@@ -193,7 +196,7 @@ impl<T: Entry> BlockKrylov<T> {
         Ok(())
     }
 
-    /// Dᴴ V for vectors D, one number after the other for each column of V.
+    /// Products Dᴴ V with the vectors D: for each column of V one number per vector.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -208,7 +211,7 @@ impl<T: Entry> BlockKrylov<T> {
         Ok(seen)
     }
 
-    /// V z
+    /// Motion V z of coordinates z.
     fn motion(&self, z: &[Complex64]) -> Result<Vec<T>> {
         let mut motion = try_vec(self.n, T::NONE, CONTEXT)?;
         for (column, &z) in self.basis.chunks_exact(self.n.max(1)).zip(z) {
@@ -219,8 +222,8 @@ impl<T: Entry> BlockKrylov<T> {
         Ok(motion)
     }
 
-    /// Vᴴ A V z for coordinates z, one column after the other, in which products with A are rounded once. The basis is
-    /// orthonormal by plain products, which lose the smallest stiffness in the largest one.
+    /// Products Vᴴ A V z for coordinates z, one column after the other, with products by A rounded once. Plain
+    /// products, with which the basis is orthonormal, lose the smallest stiffness in the largest.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
@@ -240,8 +243,8 @@ impl<T: Entry> BlockKrylov<T> {
         Ok(found)
     }
 
-    /// The first block, of A⁻¹ times the given vectors. Address space for a number of `blocks` like it is reserved where that
-    /// is possible: a basis that moves when it grows leaves holes, which remain resident.
+    /// Makes the first block, A⁻¹ times the given vectors. Address space for `blocks` blocks of this size is reserved
+    /// where possible: a basis that moves when it grows leaves holes, which remain resident.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
@@ -264,7 +267,7 @@ impl<T: Entry> BlockKrylov<T> {
         self.absorb(block, &sizes, interrupt)
     }
 
-    /// One more block; `false` where the basis holds all of the images.
+    /// Adds one more block; `false` where the basis already holds all images.
     ///
     /// # Errors
     /// As [`Self::start`].
@@ -276,14 +279,14 @@ impl<T: Entry> BlockKrylov<T> {
         Ok(self.order() > before)
     }
 
-    /// Whether a block may be of some combinations of the candidates: there is one operator.
+    /// Whether a block may consist of some combinations of the candidates only: there is one operator.
     #[must_use]
     pub fn can_choose(&self) -> bool {
         self.damping.is_none()
     }
 
-    /// A block of the combinations E W of the candidates E for the columns of W; `false` where it is nothing new. The candidates that
-    /// are left belong to the next block.
+    /// Adds a block of the combinations E W of the candidates E, for the columns of W; `false` where it adds nothing.
+    /// The remaining candidates belong to the next block.
     ///
     /// # Errors
     /// As [`Self::start`].
@@ -330,8 +333,8 @@ impl<T: Entry> BlockKrylov<T> {
         Ok(())
     }
 
-    /// Appends what is new in the candidates, which came from images of the given sizes, and computes the images of the
-    /// new block.
+    /// Appends the part of the candidates that is not in the basis, and computes the images of the new block; `sizes`
+    /// are those of the images from which the candidates came.
     fn absorb(&mut self, mut block: Vec<T>, sizes: &[f64], interrupt: &Interrupt<'_>) -> Result<()> {
         let n = self.n;
         let first = self.order();
@@ -357,7 +360,7 @@ impl<T: Entry> BlockKrylov<T> {
         self.images(first, interrupt)
     }
 
-    /// Images of the columns from `first` on, beside the rest of those before.
+    /// Computes the images of the columns from `first` on, and adds them to the remaining parts of earlier ones.
     fn images(&mut self, first: usize, interrupt: &Interrupt<'_>) -> Result<()> {
         let n = self.n;
         let order = self.order();
@@ -431,7 +434,7 @@ impl<T: Entry> BlockKrylov<T> {
         Ok(())
     }
 
-    /// block ← block − V Vᴴ A block
+    /// block ← block − V Vᴴ A block, the part outside of the basis.
     fn project(&self, block: &mut [T], weighted: &[T], interrupt: &Interrupt<'_>) -> Result<()> {
         let (n, order) = (self.n, self.order());
         let columns = block.len() / n.max(1);
@@ -457,7 +460,7 @@ impl<T: Entry> BlockKrylov<T> {
     }
 }
 
-/// x ← x − U Uᴴ A x for orthonormal columns U, with A U.
+/// x ← x − U Uᴴ A x for orthonormal columns U; A U is given.
 fn remove_part<T: Entry>(
     x: &mut [T],
     (unit, weighted): (&[T], &[T]),

@@ -13,27 +13,27 @@ const CONTEXT: &str = "an iterative linear solution";
 /// Outcome of an iteration that converged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Converged {
-    /// Products that it took.
+    /// Number of products with the matrix.
     pub products: usize,
-    /// Whether the determinant of Hessenberg's matrix is positive. Its eigenvalues approximate those of A that matter to
-    /// b and lie apart from the others, a pair of complex ones leaves the sign as it is, and so does 1: where A is the
-    /// identity but for few eigenvalues, this is the sign of det A.
+    /// Whether the determinant of the Hessenberg matrix is positive. Its eigenvalues approximate those of A that
+    /// matter to b and lie apart from the others. Since pairs of complex ones and the eigenvalue 1 leave the sign
+    /// unchanged, this is the sign of det A where A is the identity but for few eigenvalues.
     pub positive: bool,
 }
 
-/// The method with its memory, which grows with the products that a solution takes and serves the following ones.
+/// The method with its memory, which grows with the number of products and is used again by later solutions.
 #[derive(Default)]
 pub struct Gmres {
     basis: Vec<Vec<f64>>,
-    /// Columns of the triangular factor of Hessenberg's matrix, and the rotations that made it.
+    /// Columns of the Hessenberg matrix' triangular factor; and the rotations that made it.
     triangle: Vec<Vec<f64>>,
     rotations: Vec<(f64, f64)>,
     rest: Vec<f64>,
 }
 
 impl Gmres {
-    /// Solves A x = b from x = 0 until ‖b − A x‖ ≤ tolerance·‖b‖; `product` computes A v. `None`, with b as it was, if
-    /// that takes more than `most` products; otherwise b then holds x.
+    /// Solves A x = b from x = 0 until ‖b − A x‖ ≤ tolerance·‖b‖, where `product` computes A v; b is replaced by x.
+    /// Returns `None`, with b unchanged, if this takes more than `most` products.
     ///
     /// # Errors
     /// `OutOfMemory`, and those of the products.
@@ -101,7 +101,7 @@ impl Gmres {
         Ok(None)
     }
 
-    /// Memory for the vector `k` of the basis, of `n` numbers, and for the column before it.
+    /// Memory for vector `k` of the basis, with `n` numbers, and for the column before it.
     fn reserve(&mut self, k: usize, n: usize) -> Result<()> {
         if self.basis.first().is_some_and(|first| first.len() != n) {
             self.basis.clear();
@@ -118,7 +118,8 @@ impl Gmres {
     }
 }
 
-/// Takes the parts along known vectors away from v, one after the other, and notes them: compiled for the instructions of the processor.
+/// Removes from v its components along known vectors, one after the other, and stores them; compiled for the vector
+/// instructions of the processor.
 struct Orthogonalise<'a> {
     v: &'a mut [f64],
     known: &'a [Vec<f64>],
@@ -141,7 +142,7 @@ impl WithSimd for Orthogonalise<'_> {
     }
 }
 
-/// x = Q R⁻¹ g
+/// x ← Q R⁻¹ g, the combination of basis vectors that solves the system.
 fn combine(basis: &[Vec<f64>], triangle: &[Vec<f64>], g: &mut [f64], x: &mut [f64]) {
     for k in (0..triangle.len()).rev() {
         g[k] /= triangle[k][k];

@@ -113,7 +113,8 @@ const MOVES: usize = 8;
 /// Kind: tuned; measured on: not recorded.
 const BACK: f64 = 4.0;
 
-/// All eigenpairs with λ in an interval (low, high), mass-normalised and ascending; `None` if they are more than `most`.
+/// All eigenpairs with λ in an interval (low, high), mass-normalised and ascending; `None` if there are more than
+/// `most`.
 ///
 /// # Errors
 /// As [`lowest`].
@@ -158,12 +159,12 @@ pub fn within(
 /// Kind: tuned; measured on: not recorded.
 const INSIDE: f64 = 0.4873;
 
-/// The eigenvalues of the operator that a search is for.
+/// Eigenvalues of the operator that a search must find.
 #[derive(Clone, Copy)]
 enum Goal {
-    /// So many of the largest.
+    /// The given number of the largest eigenvalues.
     Largest(usize),
-    /// All whose modulus is not below the number, if they are not more than so many.
+    /// All eigenvalues whose modulus is at least the first number, if there are at most as many as the second.
     Above(f64, usize),
 }
 
@@ -175,7 +176,7 @@ const DENSE_IF_NEGATIVE: usize = 400;
 /// Kind: fixed.
 const LANCZOS_EIGEN_COPIES: usize = 8;
 
-/// The lowest of all pairs, by dense algebra.
+/// The lowest pairs, by dense algebra, which finds all.
 fn all_of(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Result<Pairs> {
     let n = k.rows;
     check_memory::<Complex64>(
@@ -199,15 +200,16 @@ struct Search<'a> {
     place: Place,
     mass: &'a Csc,
     interrupt: &'a Interrupt<'a>,
-    /// Eigenvalues 1/(λ + σ) of the operator, their vectors φ, and M φ.
+    /// Eigenvalues 1/(λ + σ) of the operator, with their vectors φ, and M φ.
     found: Vec<(f64, Vec<Complex64>, Vec<Complex64>)>,
-    /// Whether the last run found all that it was for.
+    /// Whether the last run reached its goal.
     is_complete: bool,
-    /// Remainder that the last run for the largest did not settle.
+    /// Largest Ritz values that the last run for the largest eigenvalues left unconverged; `None` if it left none.
     open: Option<Open>,
 }
 
-/// Largest Ritz values that have not converged: the first, how far at most it is from an eigenvalue, and the last that was wanted.
+/// Largest Ritz values that have not converged: the first one, its largest distance from an eigenvalue, and the last
+/// requested one.
 #[derive(Clone, Copy)]
 struct Open {
     first: f64,
@@ -215,18 +217,18 @@ struct Open {
     last: f64,
 }
 
-/// Basis q of a run, M q, and the diagonal of Lanczos's matrix with what is beside it.
+/// Basis q of a run, M q, and the Lanczos matrix by its diagonal and the entries beside it.
 #[derive(Default)]
 struct Run {
     basis: Vec<Vec<Complex64>>,
     weighted: Vec<Vec<Complex64>>,
     alpha: Vec<f64>,
-    /// From the size of the first vector on.
+    /// Entries beside the diagonal, beginning with the size of the first vector.
     beta: Vec<f64>,
 }
 
 impl Run {
-    /// Ritz values with so many of the last coefficients of their vectors, vector after vector.
+    /// Ritz values; and the last `rows` coefficients of their vectors, vector after vector.
     fn ritz(&self, rows: usize, interrupt: &Interrupt<'_>) -> Result<(Vec<f64>, Vec<f64>)> {
         const CONTEXT: &str = "the eigenvectors";
         let size = self.alpha.len();
@@ -244,13 +246,13 @@ impl Run {
 }
 
 impl Search<'_> {
-    /// Finds the `count` largest eigenvalues of the operator at this shift; `open` tells if some may be missing.
+    /// Finds the `count` largest eigenvalues of the operator at this shift; `open` shows whether some may be missing.
     fn all_lowest(&mut self, count: usize) -> Result<()> {
         for round in 0..=count {
             let before = self.smallest(count);
             let new = self.run(Goal::Largest(count), round)?;
             let is_full = self.found.len() >= count;
-            // What is below those found is not wanted, whether it has converged or not.
+            // Eigenvalues below those found are not wanted, whether they have converged or not.
             if is_full && self.open.is_some_and(|open| open.first + open.bound <= before) {
                 self.open = None;
             }
@@ -262,7 +264,7 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// The inverse at a shift closer below the lowest eigenvalues, and the shift; `None` if there is none.
+    /// A shift closer below the lowest eigenvalues, with the inverse at it; `None` if there is none.
     fn nearer(&self, (k, m): (&Csc, &Csc), shift: f64, interrupt: &Interrupt<'_>) -> Result<Option<(Inverse, f64)>> {
         let Some(open) = self.open.filter(|_| self.place != Place::Within) else {
             return Ok(None);
@@ -285,7 +287,7 @@ impl Search<'_> {
         Ok(None)
     }
 
-    /// Lanczos steps of a run for so many eigenvalues.
+    /// Number of Lanczos steps in a run for up to `most` eigenvalues.
     fn steps(&self, most: usize) -> usize {
         let n = self.mass.rows;
         let extra = match self.place {
@@ -302,7 +304,7 @@ impl Search<'_> {
         values.get(count - 1).copied().unwrap_or(0.0)
     }
 
-    /// The pairs found, in their order.
+    /// The eigenpairs found, in the order of λ.
     fn pairs(&self, shift: f64) -> Result<Pairs> {
         let n = self.mass.rows;
         let values = try_vec(n.saturating_mul(self.found.len()), Complex64::ZERO, "the eigenvectors")?;
@@ -316,8 +318,8 @@ impl Search<'_> {
         })
     }
 
-    /// One Lanczos run orthogonal to the vectors found; it stores its converged pairs and returns the largest new
-    /// eigenvalue, by modulus.
+    /// One Lanczos run, orthogonal to the vectors found before. It stores its converged pairs, and returns the
+    /// largest new eigenvalue by modulus.
     fn run(&mut self, goal: Goal, round: usize) -> Result<f64> {
         let n = self.mass.rows;
         let (Goal::Largest(most) | Goal::Above(_, most)) = goal;
@@ -372,7 +374,7 @@ impl Search<'_> {
         Ok(inner(&rest, &self.times_mass(&rest)?).re.max(0.0).sqrt())
     }
 
-    /// Whether the goal is reached, or beyond reach.
+    /// Whether the goal is reached, or cannot be reached.
     fn converged(&self, run: &Run, goal: Goal, v: &[Complex64]) -> Result<bool> {
         let after = self.after(run, v)?;
         let (values, last) = run.ritz(1, self.interrupt)?;
@@ -392,7 +394,7 @@ impl Search<'_> {
         })
     }
 
-    /// Stores the converged pairs that the goal asks for; the largest of their eigenvalues, by modulus.
+    /// Stores the converged pairs that belong to the goal; returns the largest of their eigenvalues, by modulus.
     fn keep(&mut self, run: &Run, goal: Goal, v: &[Complex64]) -> Result<f64> {
         if run.alpha.is_empty() {
             return Ok(0.0);
@@ -450,7 +452,7 @@ impl Search<'_> {
         Ok(largest)
     }
 
-    /// v ← (K + σM)⁻¹ M v
+    /// v ← (K + σM)⁻¹ M v.
     fn apply(&mut self, v: &mut Vec<Complex64>) -> Result<()> {
         *v = self.times_mass(v)?;
         self.inverse.solve(v, self.interrupt)

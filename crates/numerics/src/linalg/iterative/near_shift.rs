@@ -51,21 +51,21 @@ const POOR: f64 = 1e-7;
 
 const CONTEXT: &str = "the damped modes";
 
-/// The eigenvalues that a search is for.
+/// Eigenvalues that a search must find.
 #[derive(Clone, Copy, Debug)]
 pub enum Goal {
-    /// So many next to the shift.
+    /// The given number of eigenvalues nearest to the shift.
     Nearest(usize),
-    /// All that are closer to the shift than a radius, if they are not more than a number.
+    /// All eigenvalues within a radius of the shift, if there are at most the given number.
     Within(f64, usize),
 }
 
 /// Eigenvalues next to a shift.
 #[derive(Debug)]
 pub struct Near {
-    /// λ and x of the eigenvalues found, by their distance.
+    /// λ and x of the eigenvalues found, by rising distance from the shift.
     pub pairs: Vec<(Complex64, Vec<Complex64>)>,
-    /// Distance from the shift up to which all are found.
+    /// Distance from the shift up to which all eigenvalues are found.
     pub radius: f64,
 }
 
@@ -76,31 +76,31 @@ pub struct NearShift<'a> {
     shift: Complex64,
     unit: f64,
     factor: Factor,
-    /// Orthonormal vectors of the states, with |μ|.
+    /// Orthonormal Schur vectors of the states, each with |μ|.
     kept: Vec<(f64, Vec<Complex64>)>,
     runs: usize,
     interrupt: &'a Interrupt<'a>,
 }
 
-/// Orthonormal vectors of a run, the columns of Hessenberg's matrix with the entry below.
+/// Orthonormal vectors of a run; and the columns of the Hessenberg matrix with the entry below the diagonal.
 #[derive(Default)]
 struct Run {
     basis: Vec<Vec<Complex64>>,
     columns: Vec<Vec<Complex64>>,
 }
 
-/// Ritz values of a run from the largest on: μ, residual and coefficients.
+/// Ritz values of a run, the largest first: μ, residual and coefficients.
 type Ritz = Vec<(Complex64, f64, Vec<Complex64>)>;
 
-/// The end of a run.
+/// Outcome of a run.
 struct End {
     /// Largest modulus of a new eigenvalue that was kept.
     largest: f64,
-    /// The run settled what it was for.
+    /// Whether the run settled its goal.
     is_settled: bool,
-    /// Sum of the vectors that had not converged.
+    /// Sum of the vectors that did not converge; `None` if all did.
     rest: Option<Vec<Complex64>>,
-    /// No motion is left.
+    /// Whether no further motion is left.
     is_empty: bool,
 }
 
@@ -134,7 +134,7 @@ impl<'a> NearShift<'a> {
         })
     }
 
-    /// Finds what the goal asks for, beside what earlier searches found.
+    /// Finds the eigenvalues of the goal, in addition to those of earlier searches.
     ///
     /// # Errors
     /// `NoConvergence`, `Singular`, `OutOfMemory`; `StoppedByCaller`.
@@ -170,7 +170,7 @@ impl<'a> NearShift<'a> {
         )
     }
 
-    /// |μ| above which all are wanted.
+    /// Level of |μ| above which all eigenvalues are requested.
     fn level(&self, goal: Goal) -> f64 {
         match goal {
             Goal::Within(radius, _) => radius.recip(),
@@ -236,7 +236,7 @@ impl<'a> NearShift<'a> {
         Ok(settled)
     }
 
-    /// Keeps the vectors of a run that have converged and are wanted.
+    /// Keeps those vectors of a run that have converged and are requested.
     fn keep(&mut self, run: &Run, ritz: &Ritz, (level, wanted): (f64, usize), is_settled: bool) -> Result<End> {
         let mut end = End {
             largest: 0.0,
@@ -336,7 +336,7 @@ impl<'a> NearShift<'a> {
         Ok(Near { pairs, radius })
     }
 
-    /// S z
+    /// Operator product S z.
     fn applied(&mut self, z: &[Complex64]) -> Result<Vec<Complex64>> {
         let n = self.mass.rows;
         let (x, v) = z.split_at(n);
@@ -352,7 +352,8 @@ impl<'a> NearShift<'a> {
         Ok(state)
     }
 
-    /// Removes from v, twice, its parts along the vectors kept and along those of the run, which are added to `column`.
+    /// Removes from v, twice, its components along the kept vectors and those of the run; the latter are added to
+    /// `column`.
     fn orthogonalise(&self, v: &mut [Complex64], run: &Run, column: &mut [Complex64]) -> Result<()> {
         for _ in 0..2 {
             self.interrupt.check()?;
@@ -370,7 +371,7 @@ impl<'a> NearShift<'a> {
 }
 
 impl Run {
-    /// Ritz values from the largest on.
+    /// Ritz values, the largest first.
     fn ritz(&self, interrupt: &Interrupt<'_>) -> Result<Ritz> {
         let m = self.columns.len();
         let mut h = try_vec(m * m, Complex64::ZERO, CONTEXT)?;
@@ -399,7 +400,8 @@ impl Run {
     }
 }
 
-/// Whether the wanted ones have converged: those above a level with one that is clearly below, or the first ones where there is no level.
+/// Whether the requested values have converged: all above the level, and one that is clearly below it; or without a
+/// level the first ones.
 fn are_settled(ritz: &Ritz, level: f64, wanted: usize) -> bool {
     let converged =
         |(mu, residual, _): &(Complex64, f64, Vec<Complex64>)| *residual <= NEAR_SHIFT_CONVERGED * mu.norm();

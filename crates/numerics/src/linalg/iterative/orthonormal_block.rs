@@ -18,7 +18,7 @@ const CONTEXT: &str = "the reduced structure";
 /// Kind: rounding.
 const ORTHONORMAL_BLOCK_EXHAUSTED: f64 = 1e-12;
 
-/// out = Vᴴ X for columns of n numbers.
+/// out ← Vᴴ X for columns of n numbers.
 pub fn adjoint_product<T: Entry>(v: &[T], x: &[T], n: usize, out: &mut [T]) {
     let (rows, columns) = (v.len() / n.max(1), x.len() / n.max(1));
     if rows == 0 || columns == 0 {
@@ -42,7 +42,7 @@ pub fn adjoint_product<T: Entry>(v: &[T], x: &[T], n: usize, out: &mut [T]) {
     );
 }
 
-/// Norms of columns whose products with A are given.
+/// Norms of columns in the inner product of A; `weighted` holds their products with A.
 pub fn norms<T: Entry>(block: &[T], weighted: &[T], n: usize) -> Vec<f64> {
     let columns = block.chunks_exact(n.max(1)).zip(weighted.chunks_exact(n.max(1)));
     columns.map(|(u, w)| dot(u, w).re.max(0.0).sqrt()).collect()
@@ -52,7 +52,7 @@ fn dot<T: Entry>(u: &[T], w: &[T]) -> Complex64 {
     conjugate_sum(u, w).complex()
 }
 
-/// uᴴ w
+/// Product uᴴ w of two columns.
 fn conjugate_sum<T: Entry>(u: &[T], w: &[T]) -> T {
     let mut sum = T::NONE;
     for (&u, &w) in u.iter().zip(w) {
@@ -61,7 +61,8 @@ fn conjugate_sum<T: Entry>(u: &[T], w: &[T]) -> T {
     sum
 }
 
-/// Orthonormalises columns B that nearly are: with Bᴴ A B = L Lᴴ the columns of B L⁻ᴴ. `false` where they are not independent.
+/// Orthonormalises columns B that nearly are orthonormal: they become B L⁻ᴴ with Bᴴ A B = L Lᴴ. `false` where they
+/// are not independent.
 ///
 /// # Errors
 /// Out of memory, or a requested stop.
@@ -112,7 +113,7 @@ pub fn orthonormalise_again<T: Entry>(
 const DOWNDATED: f64 = 1e-4;
 
 /// Orthonormalises columns among themselves, the largest first, and moves those that are kept to the front. Returns
-/// their number.
+/// the number of kept ones.
 ///
 /// # Errors
 /// Out of memory, or a requested stop.
@@ -172,7 +173,7 @@ pub fn orthonormalise<T: Entry>(
     Ok(columns)
 }
 
-/// Removes the part of a column x along u, where w = A u and y = A x, and takes it off the square of its norm.
+/// Removes the component of a column x along u, where w = A u and y = A x, and updates the square of its norm.
 struct Removal<'a, T> {
     unit: (&'a [T], &'a [T]),
     later: (&'a mut [T], &'a mut [T]),
@@ -203,7 +204,7 @@ impl<T: Entry> WithSimd for Removal<'_, T> {
 /// Kind: block.
 const PARTIAL_SUMS: usize = 8;
 
-/// uᴴ w by sums side by side.
+/// Product uᴴ w, in several partial sums side by side.
 #[inline(always)]
 fn partial_sums<T: Entry>(u: &[T], w: &[T]) -> T {
     let ((u, u_rest), (w, w_rest)) = (u.as_chunks::<PARTIAL_SUMS>(), w.as_chunks::<PARTIAL_SUMS>());

@@ -12,18 +12,18 @@ use crate::interrupt::Interrupt;
 use crate::linalg::factors::lu::Lu;
 use crate::linalg::factors::small_lu::{self, SmallLu};
 
-/// The parts of the matrix [J·u, r·p; row].
+/// The parts of the bordered matrix [J·u, r·p; row].
 #[derive(Clone, Copy)]
 pub struct Parts<'a> {
-    /// J, column-major.
+    /// Jacobian J, column-major.
     pub jacobian: &'a [f64],
-    /// r
+    /// Column r of the border.
     pub column: &'a [f64],
-    /// For each unknown: its column of J differs from that of the identity.
+    /// For each unknown, whether its column of J differs from that of the identity.
     pub active: &'a [bool],
     /// Scales of the unknowns and of the parameter: u and p.
     pub scales: (f64, f64),
-    /// The row.
+    /// Last row of the matrix.
     pub row: &'a [f64],
 }
 
@@ -50,7 +50,7 @@ impl Factors {
         }
     }
 
-    /// Column to fill of a matrix of the order set last.
+    /// Column j, to be filled, of a matrix of the order set last.
     fn column(&mut self, j: usize) -> &mut [f64] {
         match self {
             Self::Small(lu) => lu.column(j),
@@ -61,7 +61,7 @@ impl Factors {
         }
     }
 
-    /// Fills in [J·u, r·p; row].
+    /// Fills in the bordered matrix [J·u, r·p; row].
     fn fill_bordered(&mut self, jacobian: &[f64], (u, p): (f64, f64), column: &[f64], row: &[f64]) {
         let n = column.len();
         if let Self::Small(lu) = self {
@@ -97,16 +97,16 @@ impl Factors {
 pub struct Bordered {
     lu: Factors,
     n: usize,
-    /// Unknowns that are solved for; the others have identity columns.
+    /// Unknowns that are solved for. The others have identity columns.
     active: Vec<usize>,
     eliminated: Vec<usize>,
-    /// Rows of the eliminated unknowns over the active ones and the parameter.
+    /// Rows of the eliminated unknowns, over the active ones and the parameter.
     rest: Vec<f64>,
-    /// Border of the eliminated unknowns.
+    /// Border entries of the eliminated unknowns.
     border: Vec<f64>,
     u_scale: f64,
     reduced: Vec<f64>,
-    /// Right-hand side, change and scaled unknowns of a refinement.
+    /// Right-hand side, change and scaled unknowns of an iterative refinement.
     known: Vec<f64>,
     change: Vec<f64>,
     scaled: Vec<f64>,

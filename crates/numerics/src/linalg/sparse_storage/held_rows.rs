@@ -9,17 +9,18 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the rows that move";
 
-/// Rows of a pencil that no penalty holds.
+/// Rows of a pencil of stiffness and mass that no penalty stiffness holds.
 #[derive(Debug)]
 pub struct MovingRows {
-    /// Their numbers, ascending.
+    /// Indices of these rows, ascending.
     rows: Vec<usize>,
     order: usize,
 }
 
 impl MovingRows {
-    /// The rows that move; `None` where all do. A row is held if its diagonal exceeds the sum of the entries beside it by more
-    /// than 1/ε; one without entries beside it, if its diagonal exceeds those of all rows with couplings by as much.
+    /// Finds the rows that move; `None` if all do. A row is held if its diagonal exceeds the sum of its other entries
+    /// by more than 1/ε; a row without other entries is held if its diagonal exceeds those of all coupled rows as
+    /// much.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -56,7 +57,7 @@ impl MovingRows {
         Ok((rows.len() < n && !rows.is_empty()).then_some(Self { rows, order: n }))
     }
 
-    /// Rows and columns of a matrix that move.
+    /// The matrix restricted to the rows and columns that move.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -72,7 +73,7 @@ impl MovingRows {
         Csc::from_triplets(self.rows.len(), self.rows.len(), entries)
     }
 
-    /// Shapes on all rows, one after the other, with zeros where they are held.
+    /// Shapes over all rows, one after the other, with zeros where rows are held.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -88,7 +89,7 @@ impl MovingRows {
         Ok(all)
     }
 
-    /// The same for pairs.
+    /// Eigenpairs whose vectors cover all rows, with zeros where rows are held.
     ///
     /// # Errors
     /// `OutOfMemory`.

@@ -19,13 +19,13 @@ pub struct KeptMatrix {
 
 #[derive(Clone, Debug)]
 enum Numbers {
-    /// The imaginary part of each is a positive zero.
+    /// Real values: the imaginary part of each entry is a positive zero.
     Real(Vec<f64>),
     Complex(Vec<Complex64>),
 }
 
 impl KeptMatrix {
-    /// The entries of a square matrix, bit by bit.
+    /// Keeps the entries of a square matrix, unchanged to the bit.
     ///
     /// # Errors
     /// `Dimension` for 2³² rows or more; `OutOfMemory`.
@@ -50,7 +50,7 @@ impl KeptMatrix {
         Ok(Self { col_ptr, rows, values })
     }
 
-    /// A copy, allocated fallibly.
+    /// A copy that returns an error if memory is short.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -65,7 +65,7 @@ impl KeptMatrix {
         })
     }
 
-    /// The matrix in the form of computations.
+    /// The matrix as compressed sparse columns with complex values, for computations.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -105,7 +105,7 @@ impl KeptMatrix {
         &self.rows
     }
 
-    /// The entries without imaginary parts; `None` where one has such a part, a negative zero included.
+    /// The entries as real numbers; `None` where one has an imaginary part, a negative zero included.
     #[must_use]
     pub fn real_values(&self) -> Option<&[f64]> {
         match &self.values {
@@ -153,7 +153,7 @@ impl KeptMatrix {
         worst_pair(self, symmetry)
     }
 
-    /// A ← cA
+    /// A ← cA with a real factor c.
     pub fn scale(&mut self, factor: f64) {
         match &mut self.values {
             Numbers::Real(values) => values.iter_mut().for_each(|v| *v *= factor),

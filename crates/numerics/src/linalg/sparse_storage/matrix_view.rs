@@ -27,12 +27,12 @@ pub enum Storage<'a> {
     },
 }
 
-/// The numbers.
+/// Numbers of a matrix, real or complex.
 #[derive(Clone, Copy, Debug)]
 pub enum Values<'a> {
-    /// Real entries.
+    /// Real numbers.
     Real(&'a [f64]),
-    /// Complex entries.
+    /// Complex numbers.
     Complex(&'a [Complex64]),
 }
 
@@ -52,18 +52,18 @@ impl Values<'_> {
     }
 }
 
-/// The part of the matrix that is given, and its symmetry.
+/// The part of the matrix that is given, and the symmetry of the whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// All entries of a symmetric or Hermitian matrix; the symmetry is checked.
+    /// All entries of a symmetric or Hermitian matrix, whose symmetry is checked.
     Full,
     /// The lower triangle of a symmetric or Hermitian matrix; the upper one is not read.
     Lower,
     /// The upper triangle of a symmetric or Hermitian matrix; the lower one is not read.
     Upper,
-    /// All entries of any matrix.
+    /// All entries of a matrix without any symmetry.
     General,
-    /// All entries of a matrix with A = Aᵀ, real or complex; the symmetry is checked.
+    /// All entries of a matrix with A = Aᵀ, real or complex, whose symmetry is checked.
     Symmetric,
     /// The lower triangle of a matrix with A = Aᵀ, real or complex; the upper one is not read.
     SymmetricLower,
@@ -106,17 +106,17 @@ impl Part {
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct MatrixView<'a> {
-    /// Number of rows.
+    /// Number of rows of the matrix.
     pub rows: usize,
-    /// Number of columns.
+    /// Number of columns of the matrix.
     pub cols: usize,
-    /// Layout.
+    /// Layout of the numbers in memory.
     pub storage: Storage<'a>,
-    /// Entries.
+    /// Numbers of the matrix.
     pub values: Values<'a>,
-    /// Part given.
+    /// Part of the matrix that is given.
     pub part: Part,
-    /// 0 or 1: base of the indices of a sparse matrix, and of those in error sentences.
+    /// Base of the indices of a sparse matrix and of those in error sentences, 0 or 1.
     pub index_base: usize,
 }
 
@@ -147,7 +147,7 @@ impl<'a> MatrixView<'a> {
         }
     }
 
-    /// The same view with another [`Part`].
+    /// The view of a matrix of which another [`Part`] is given.
     #[must_use]
     pub fn part(mut self, part: Part) -> Self {
         self.part = part;
@@ -169,8 +169,8 @@ impl<'a> MatrixView<'a> {
         }
     }
 
-    /// The same for a skew-symmetric (complex: skew-Hermitian) matrix, given in full, which is checked, or by one
-    /// triangle.
+    /// Checks and copies a skew-symmetric (complex: skew-Hermitian) matrix as `copy_in` does. It is given in full,
+    /// and then checked, or by one triangle.
     ///
     /// # Errors
     /// As [`Self::copy_in`].

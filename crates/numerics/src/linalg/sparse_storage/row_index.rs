@@ -2,10 +2,10 @@
 
 use crate::error::{Result, fail, try_room};
 
-/// A number of a row.
+/// Index of a row in 32 bits.
 pub type Row = u32;
 
-/// Refuses an order whose rows are not all numbers of 32 bits.
+/// Refuses an order whose row indices do not fit into 32 bits.
 ///
 /// # Errors
 /// `Dimension`.
@@ -17,21 +17,21 @@ pub fn check_order(order: usize) -> Result<()> {
     Ok(())
 }
 
-/// The number of a row below an order that [`check_order`] accepts.
+/// Index of a row in 32 bits, for an order that [`check_order`] accepts.
 #[inline]
 #[must_use]
 pub fn narrow(row: usize) -> Row {
     row as Row
 }
 
-/// The number as an index.
+/// Index of a row as `usize`.
 #[inline]
 #[must_use]
 pub fn wide(row: Row) -> usize {
     row as usize
 }
 
-/// Numbers of rows below `order` in 32 bits; `context` names the purpose of the memory in an error.
+/// Indices of rows below `order` in 32 bits; `context` names the purpose of the memory in an error.
 ///
 /// # Errors
 /// `Dimension` for a larger order, `OutOfMemory`.
@@ -42,7 +42,7 @@ pub fn narrowed(rows: &[usize], order: usize, context: &str) -> Result<Vec<Row>>
     Ok(narrow_rows)
 }
 
-/// The numbers as indices, as factorisations take them.
+/// Indices of rows as `usize`, as factorisations take them.
 ///
 /// # Errors
 /// `OutOfMemory`.

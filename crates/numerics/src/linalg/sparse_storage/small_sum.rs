@@ -10,16 +10,16 @@ pub(crate) const SMALL_SUM_LARGEST: usize = 16;
 
 const CONTEXT: &str = "a sum of sparse matrices";
 
-/// The sum of entries of square matrices of an order up to `N`, at most [`SMALL_SUM_LARGEST`]. To clear room for the largest order takes
-/// longer than to add four rows.
+/// Sum of entries of square matrices of order up to `N`, at most [`SMALL_SUM_LARGEST`]. The type has its own size
+/// because clearing room for the largest order takes longer than adding four rows.
 pub(crate) struct SmallSum<const N: usize> {
     columns: [[Complex64; N]; N],
-    /// Bit i of number j: whether row i of column j is stored.
+    /// Bit i of number j tells whether row i of column j is stored.
     rows: [u16; N],
 }
 
 impl<const N: usize> SmallSum<N> {
-    /// No entries.
+    /// A sum without entries.
     pub fn new() -> Self {
         Self {
             columns: [[Complex64::ZERO; N]; N],
@@ -27,13 +27,13 @@ impl<const N: usize> SmallSum<N> {
         }
     }
 
-    /// Adds an entry.
+    /// Adds an entry to the sum.
     pub fn add(&mut self, row: usize, column: usize, value: Complex64) {
         self.columns[column][row] += value;
         self.rows[column] |= 1 << row;
     }
 
-    /// Starts of the `n` columns and their end, and row and value of each entry.
+    /// Compressed form: starts of the `n` columns and their end; row of each entry; value of each entry.
     ///
     /// # Errors
     /// `OutOfMemory`.

@@ -7,7 +7,7 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "a sparse matrix";
 
-/// Compressed columns as the caller stores them, with bounds that were checked.
+/// Compressed columns as the caller stores them, with checked bounds.
 pub(crate) struct GivenColumns<'a> {
     pub order: usize,
     pub col_ptr: &'a [i64],
@@ -16,8 +16,9 @@ pub(crate) struct GivenColumns<'a> {
 }
 
 impl GivenColumns<'_> {
-    /// The matrix, with the mirror image of one triangle if `mirrored` is its symmetry; entries that `keep` (row, column)
-    /// refuses, and zeros, are left out. `None` where rows do not ascend, or an entry is not finite or outside.
+    /// The matrix, completed by the mirror image of the given triangle if `mirrored` is its symmetry. Entries that
+    /// `keep` (row, column) refuses, and zeros, are left out. `None` where rows do not ascend, or an entry is not
+    /// finite or outside of the matrix.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -74,8 +75,8 @@ impl GivenColumns<'_> {
         }))
     }
 
-    /// Calls back with the position, row and column of each entry, column after column; `None` for a row that is outside or
-    /// not above the one before.
+    /// Calls `entry` with position, row and column of each entry, column after column; the row is `None` if it is
+    /// outside of the matrix or not above the one before.
     fn visit(&self, mut entry: impl FnMut(usize, Option<usize>, usize)) {
         for (j, ends) in self.col_ptr.windows(2).enumerate() {
             let mut least = 0;

@@ -8,9 +8,9 @@ use num_complex::Complex64;
 /// duplicates.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Csc {
-    /// Number of rows.
+    /// Number of rows of the matrix.
     pub rows: usize,
-    /// Number of columns.
+    /// Number of columns of the matrix.
     pub cols: usize,
     /// Start of each column in [`Self::row_idx`], and the end of the last.
     pub col_ptr: Vec<usize>,
@@ -22,7 +22,7 @@ pub struct Csc {
 
 /// Reads a square matrix column by column.
 pub trait Columns {
-    /// Number of columns.
+    /// Number of columns of the matrix.
     fn columns(&self) -> usize;
     /// Number of stored entries.
     fn stored(&self) -> usize;
@@ -83,7 +83,7 @@ pub fn aligned(a: &impl Columns, pattern: &Csc) -> Result<Vec<Complex64>> {
     Ok(values)
 }
 
-/// Aᵀ
+/// The transposed matrix Aᵀ.
 fn transposed(a: &impl Columns) -> Result<Csc> {
     const CONTEXT: &str = "a sparse matrix";
     let n = a.columns();
@@ -117,32 +117,32 @@ fn transposed(a: &impl Columns) -> Result<Csc> {
 /// Kind: tuned; measured on: not recorded.
 const COUNTED_ABOVE: usize = 4096;
 
-/// How a matrix enters a sum.
+/// Form in which a matrix enters a sum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// A itself.
+    /// The matrix A itself.
     Plain,
-    /// The transpose Aᵀ, not conjugated.
+    /// The transposed matrix Aᵀ, not conjugated.
     Transposed,
-    /// The complex conjugate, not transposed.
+    /// The complex conjugate matrix, not transposed.
     Conjugated,
 }
 
 /// Symmetry of a matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Symmetry {
-    /// A = Aᴴ; real matrices are then symmetric.
+    /// Hermitian, A = Aᴴ; real matrices are then symmetric.
     Hermitian,
-    /// A = Aᵀ, also where A is complex.
+    /// Symmetric, A = Aᵀ, also where A is complex.
     Plain,
-    /// A = −Aᴴ; real matrices are then skew-symmetric.
+    /// Skew-Hermitian, A = −Aᴴ; real matrices are then skew-symmetric.
     Skew,
-    /// None is known.
+    /// No symmetry is known.
     None,
 }
 
 impl Symmetry {
-    /// The entry that mirrors `v`; a real one has a real mirror image, without a negative zero.
+    /// The entry at the mirrored position of `v`; for a real entry it is real, without a negative zero.
     #[must_use]
     pub fn mirror(self, v: Complex64) -> Complex64 {
         match self {
@@ -153,7 +153,7 @@ impl Symmetry {
     }
 }
 
-/// Visits column `j` of a term of a sum: of the next transposed matrix where its form wants it.
+/// Visits column `j` of one term of a sum; a transposed term takes the next matrix from `transposed`.
 fn visit_term<'a>(
     (a, form): (&impl Columns, Form),
     transposed: &mut impl Iterator<Item = &'a Csc>,
@@ -171,7 +171,7 @@ fn visit_term<'a>(
 }
 
 impl Csc {
-    /// From (row, column, value) triplets; duplicates are summed, as in the assembly of finite elements.
+    /// A matrix from (row, column, value) triplets; duplicates are summed, as in the assembly of finite elements.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -199,8 +199,8 @@ impl Csc {
         Ok(a)
     }
 
-    /// A matrix whose columns are filled one after another with entries (row, place, value), `stored` of them at most in all: those of
-    /// one row are summed in the order of their places, which are different.
+    /// A matrix whose columns are filled in turn with entries (row, place, value), at most `stored` in all. Entries
+    /// of one row are summed in the order of their places, which must differ.
     ///
     /// # Errors
     /// `OutOfMemory`; those of `fill`.
@@ -241,7 +241,7 @@ impl Csc {
         Self::from_triplets(n, n, Vec::new())
     }
 
-    /// Σ cᵢ·form(Aᵢ) over square matrices of one order n.
+    /// The sum Σ cᵢ·form(Aᵢ) over square matrices of order n.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -310,7 +310,7 @@ impl Csc {
         Ok(sum)
     }
 
-    /// The same up to the order of [`small_sum`].
+    /// The sum of matrices up to the order of [`small_sum`].
     fn small_sum<const N: usize, A: Columns>(n: usize, terms: &[(Complex64, &A, Form)]) -> Result<Self> {
         let mut sum = SmallSum::<N>::new();
         for &(c, a, form) in terms {
@@ -331,7 +331,7 @@ impl Csc {
         })
     }
 
-    /// A copy, allocated fallibly.
+    /// A copy that returns an error if memory is short.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -357,7 +357,7 @@ impl Csc {
             .zip(self.values[range].iter().copied())
     }
 
-    /// y += c·A x.
+    /// y ← y + c·A x.
     pub fn multiply_add(&self, c: Complex64, x: &[Complex64], y: &mut [Complex64]) {
         for (j, &x) in x.iter().enumerate() {
             let cx = c * x;
@@ -367,7 +367,7 @@ impl Csc {
         }
     }
 
-    /// A x; `context` names the purpose of its memory in an error.
+    /// The product A x; `context` names the purpose of its memory in an error.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -412,7 +412,7 @@ impl Csc {
         self.values.iter().fold(0.0, |m, v| m.max(v.norm()))
     }
 
-    /// Adds to an entry that is stored; where none is, does nothing.
+    /// Adds a value to a stored entry; does nothing where the entry is not stored.
     pub fn add_stored(&mut self, i: usize, j: usize, value: Complex64) {
         let range = self.col_ptr[j]..self.col_ptr[j + 1];
         if range.len() == self.rows {
@@ -438,7 +438,7 @@ impl Csc {
         self.worst_pair(Symmetry::Hermitian)
     }
 
-    /// The same for another symmetry.
+    /// The position (row, column) with the largest deviation from a given symmetry, and the deviation.
     #[must_use]
     pub fn worst_pair(&self, symmetry: Symmetry) -> (usize, usize, f64) {
         worst_pair(self, symmetry)

@@ -13,29 +13,29 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "a Hermitian matrix";
 
-/// A real or complex number.
+/// Real or complex number as an entry of a matrix.
 pub trait Entry:
     ComplexField + Copy + Send + Sync + core::ops::AddAssign + core::ops::Mul<Output = Self> + 'static
 {
-    /// Zero.
+    /// The number zero.
     const NONE: Self;
-    /// Whether it has an imaginary part.
+    /// Whether the type has imaginary parts.
     const IS_COMPLEX: bool;
-    /// The number, without its imaginary part where it has none.
+    /// The number of this type from a complex one; a real type drops the imaginary part.
     fn of(z: Complex64) -> Self;
     /// The number as a complex one.
     fn complex(self) -> Complex64;
-    /// The number times a real one.
+    /// The number times a real factor.
     #[must_use]
     fn scaled(self, factor: f64) -> Self;
-    /// self += a b
+    /// self ← self + a b.
     fn add_product(&mut self, a: Self, b: Self);
-    /// self += conj(a) b
+    /// self ← self + conj(a) b.
     fn add_conjugate_product(&mut self, a: Self, b: Self);
-    /// The conjugate number.
+    /// The complex conjugate number.
     #[must_use]
     fn conjugated(self) -> Self;
-    /// sum += self b, real and imaginary part, with the rounding of both kept.
+    /// sum ← sum + self b, for real and imaginary part, with the rounding errors of both kept.
     fn add_exactly(self, b: Self, sum: &mut [Sum; 2]);
 }
 
@@ -180,7 +180,7 @@ impl<T: Entry> Triangle<T> {
 /// Row and value of an entry.
 type RowEntry = (usize, Complex64);
 
-/// The entries of a column on and below the diagonal.
+/// The entries of column j on and below the diagonal.
 fn below<'a>(a: &impl Columns, j: usize, column: &'a mut Vec<RowEntry>) -> Result<&'a [RowEntry]> {
     column.clear();
     let mut count = 0;
@@ -194,7 +194,7 @@ fn below<'a>(a: &impl Columns, j: usize, column: &'a mut Vec<RowEntry>) -> Resul
     Ok(column)
 }
 
-/// Calls `take` with (row, entry of the first, entry of the second) for the rows of either column.
+/// Calls `take` with (row, entry of `a`, entry of `b`) for each row that occurs in either column.
 fn merge(mut a: &[RowEntry], mut b: &[RowEntry], mut take: impl FnMut(usize, Complex64, Complex64)) {
     while !(a.is_empty() && b.is_empty()) {
         let first = |column: &[RowEntry]| column.first().map_or(usize::MAX, |&(i, _)| i);

@@ -18,10 +18,10 @@ const PANEL_COLUMNS: usize = 8;
 /// Kind: tuned; measured on: not recorded.
 const WORTH_A_PANEL: usize = 3;
 
-/// Real or imaginary parts of one row.
+/// Real or imaginary parts of one row, for the columns of a panel.
 type Lane = [f64; PANEL_COLUMNS];
 
-/// Y = (Σ f A) X for factors f with matrices A of one order n, at least one, and column-major X and Y.
+/// Y ← (Σ f A) X with factors f and matrices A (at least one) of one order n, for column-major X and Y.
 ///
 /// # Errors
 /// `OutOfMemory`; `StoppedByCaller`.
@@ -67,7 +67,7 @@ pub fn multiply<T: Entry>(
     Ok(())
 }
 
-/// y += f A x for one column.
+/// y ← y + f A x for one column.
 fn add_column<T: Entry>(factor: f64, a: &Triangle<T>, x: &[T], y: &mut [T]) {
     for (j, &xj) in x.iter().enumerate() {
         let xj = xj.scaled(factor);
@@ -84,7 +84,7 @@ fn add_column<T: Entry>(factor: f64, a: &Triangle<T>, x: &[T], y: &mut [T]) {
     }
 }
 
-/// Lays columns side by side: the real parts of a row, then its imaginary ones.
+/// Lays columns side by side: for each row the real parts, then the imaginary parts.
 fn lay<T: Entry>(x: &[T], panel: &mut [Lane], n: usize) {
     let parts = panel.len() / n;
     for (c, x) in x.chunks_exact(n).enumerate() {
@@ -98,7 +98,7 @@ fn lay<T: Entry>(x: &[T], panel: &mut [Lane], n: usize) {
     }
 }
 
-/// Columns from rows that lie side by side.
+/// Copies rows that lie side by side back to columns.
 fn take_up<T: Entry>(panel: &[Lane], y: &mut [T], n: usize) {
     let parts = panel.len() / n;
     for (c, y) in y.chunks_exact_mut(n).enumerate() {
@@ -108,7 +108,7 @@ fn take_up<T: Entry>(panel: &[Lane], y: &mut [T], n: usize) {
     }
 }
 
-/// y += f A x for columns side by side.
+/// y ← y + f A x for columns that lie side by side.
 struct Pass<'a, T> {
     factor: f64,
     a: &'a Triangle<T>,

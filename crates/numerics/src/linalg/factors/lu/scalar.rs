@@ -8,14 +8,15 @@ use pulp::bytemuck::{cast_slice, cast_slice_mut};
 
 /// Scalars of the matrices: `f64` and [`Complex64`].
 pub trait Scalar: ComplexField<RealField = f64> + faer::traits::ComplexField + Copy {
-    /// |re| + |im|: as good as the modulus for choosing a pivot, and cheaper.
+    /// Size |re| + |im|: as good as the modulus for choosing a pivot, and cheaper.
     fn size(self) -> f64;
 
-    /// i times the number; for a real one, which needs none, itself.
+    /// The number times i; a real number, which needs no turn, is returned as it is.
     #[must_use]
     fn turned(self) -> Self;
 
-    /// y ← y − x l, with `turned`, i x: products of real numbers as they lie in memory, with the digits of complex ones.
+    /// y ← y − x l, where `turned` is i x: complex products by real ones on the numbers as they lie in memory, to the
+    /// same digits.
     fn subtract(y: &mut [Self], x: &[Self], turned: &[Self], l: Self);
 }
 

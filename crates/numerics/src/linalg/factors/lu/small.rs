@@ -8,7 +8,7 @@ use crate::linalg::factors::lu::scalar::Scalar;
 use nalgebra::ComplexField;
 use pulp::{Simd, WithSimd};
 
-/// P A = L U in place of a column-major matrix of order `n`; `turned` is memory for a column.
+/// Factors P A = L U, in place of a column-major matrix of order `n`; `turned` is memory for a column.
 pub(super) struct Factorisation<'a, T> {
     pub n: usize,
     pub a: &'a mut [T],
@@ -62,8 +62,8 @@ impl<T: Scalar> WithSimd for Factorisation<'_, T> {
     }
 }
 
-/// Solves L U X = P B in place for the columns of B, row after row: each step is a sum of rows, as long as there are columns.
-/// `memory` holds one number more than B for each column.
+/// Solves L U X = P B in place for the columns of B, row after row; each step is a sum of rows, as long as there are
+/// columns. `memory` holds one number more than B for each column.
 pub(super) struct Columns<'a, T> {
     pub n: usize,
     pub factors: &'a [T],

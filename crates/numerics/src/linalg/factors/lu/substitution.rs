@@ -5,7 +5,7 @@
 use pulp::{Simd, WithSimd};
 use std::ops::{Div, Mul, Sub};
 
-/// Real or complex numbers.
+/// Real or complex number with the four operations that substitution needs.
 pub(super) trait Number: Copy + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {}
 
 impl<T: Copy + Sub<Output = T> + Mul<Output = T> + Div<Output = T>> Number for T {}
@@ -49,7 +49,7 @@ impl<T: Number> WithSimd for Substitution<'_, T> {
     }
 }
 
-/// b ← b − x p − y q
+/// b ← b − x p − y q.
 #[inline(always)]
 fn subtract<T: Number>(b: &mut [T], (x, p): (T, &[T]), (y, q): (T, &[T])) {
     for ((b, &p), &q) in b.iter_mut().zip(p).zip(q) {

@@ -67,7 +67,7 @@ impl Bordered {
         m == count && self.active.iter().all(|&j| k.active[j]) && m * m >= FACTOR_REUSE_LEAST * n
     }
 
-    /// b − K x
+    /// out ← b − K x.
     fn subtract_product(&mut self, k: &Parts<'_>, x: &[f64], b: &[f64], out: &mut [f64]) {
         let n = self.n;
         let (u_scale, p_scale) = k.scales;

@@ -39,16 +39,16 @@ pub struct AutomaticSystem {
     n: usize,
     dense: Option<Box<DenseSystem>>,
     krylov: Option<Box<KrylovSystem>>,
-    /// Whether the matrix taken over last is solved by iteration.
+    /// Whether the matrix of the last update is solved by iteration.
     iterates: bool,
-    /// Backend that holds factors, if one does: the iterative one where `true`.
+    /// Which backend holds factors: the iterative one if `true`, the dense one if `false`; `None`: neither.
     factored: Option<bool>,
-    /// Updates for which no iteration is tried.
+    /// Number of further updates for which no iteration is tried.
     direct: usize,
 }
 
 impl AutomaticSystem {
-    /// Memory for `n` unknowns and one parameter; that of larger systems when it is first used.
+    /// Memory for `n` unknowns and one parameter; for larger systems it is allocated at the first use.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -68,13 +68,13 @@ impl AutomaticSystem {
         })
     }
 
-    /// Whether the matrix taken over last is solved by factors of all of it.
+    /// Whether the matrix of the last update is solved by factors of the whole matrix.
     #[must_use]
     pub fn is_direct(&self) -> bool {
         !self.iterates
     }
 
-    /// Lengths of the groups and of their parts, where an iteration is quicker.
+    /// Lengths of the groups and of their parts, where an iteration is quicker; else `None`.
     fn lengths(&self, jacobian: &mut dyn Jacobian) -> Option<Lengths> {
         if self.direct > 0 || self.n <= AUTOMATIC_DIRECT_UP_TO {
             return None;

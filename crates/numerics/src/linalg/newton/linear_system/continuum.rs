@@ -21,21 +21,21 @@ const MOST_MOTIONS: usize = 4;
 
 const CONTEXT: &str = "the linear system";
 
-/// A matrix completed to a regular one.
+/// A singular matrix completed to a regular one.
 #[derive(Default)]
 pub(super) struct Completed {
     matrix: Vec<f64>,
     column: Vec<f64>,
     active: Vec<bool>,
-    /// b
+    /// Generic vector b.
     generic: Vec<f64>,
     is_copied: bool,
-    /// The motions v that were found last: determinants keep their sign where these keep their sense.
+    /// Motions v found last. Determinants keep their sign as long as these keep their sense.
     found: Vec<Vec<f64>>,
 }
 
 impl Completed {
-    /// Completes the matrix `k`, whose factors are at hand if `factored`, and factors it.
+    /// Completes the matrix `k` and factors it; `factored`: `factors` already holds the factors of `k`.
     ///
     /// # Errors
     /// `Singular`; `OutOfMemory`; `StoppedByCaller`.
@@ -82,7 +82,7 @@ impl Completed {
         Ok(())
     }
 
-    /// The unit motion v of a matrix that is factored, where that is singular.
+    /// Unit motion v that a factored matrix maps to nearly zero; `None` where the matrix is regular.
     fn motion(&mut self, factors: &mut Bordered, k: &Parts<'_>, round: usize) -> Result<Option<Vec<f64>>> {
         let n = k.column.len();
         if self.generic.len() != n {
@@ -110,7 +110,7 @@ impl Completed {
         Ok(Some(v))
     }
 
-    /// Copies the matrix, unless that was done.
+    /// Copies the matrix, unless a copy exists.
     fn copy(&mut self, k: &Parts<'_>) -> Result<()> {
         if core::mem::replace(&mut self.is_copied, true) {
             return Ok(());
@@ -125,7 +125,7 @@ impl Completed {
         Ok(())
     }
 
-    /// Factors the copy, of which no column is that of the identity any more.
+    /// Factors the copy, none of whose columns counts as that of the identity any more.
     fn factor_copy(&self, factors: &mut Bordered, k: &Parts<'_>, interrupt: &Interrupt<'_>) -> Result<()> {
         factors.factor(&self.matrix, &self.column, &self.active, k.scales, k.row, interrupt)
     }

@@ -17,38 +17,39 @@ const CONTEXT: &str = "the terms of low rank";
 /// of it has a fifth more crosses.
 const LEFT_BY_CROSSES: f64 = 1e-3;
 
-/// U and V of all groups.
+/// Factors U and V of all groups.
 #[derive(Default)]
 pub(super) struct Crosses {
     groups: Vec<Group>,
     rank: usize,
-    /// U_c column after column, group after group.
+    /// U_c, column after column, group after group.
     left: Vec<f64>,
-    /// V_cᵀ column after column, motion after motion, group after group.
+    /// V_cᵀ, column after column, motion after motion, group after group.
     right: Vec<f64>,
-    /// Group of the motion of each block of V_cᵀ.
+    /// Motion group of each block of V_cᵀ.
     motions: Vec<usize>,
-    /// The numbers of F_c that are left, and rows of V_cᵀ one after another.
+    /// Remaining numbers of F_c; and rows of V_cᵀ, one after another.
     rest: Vec<f64>,
     rows: Vec<f64>,
 }
 
-/// Where the crosses of the forces of a group stand.
+/// Position of the crosses that belong to the forces of a group.
 #[derive(Clone, Copy)]
 struct Group {
     force: usize,
-    /// First cross, and number of them.
+    /// Index of the first cross, and number of crosses.
     first: usize,
     rank: usize,
-    /// First of its motions, and number of them.
+    /// Index of the first motion group, and number of them.
     motions: (usize, usize),
-    /// Where U_c and V_cᵀ begin.
+    /// Positions at which U_c and V_cᵀ begin.
     left: usize,
     right: usize,
 }
 
 impl Crosses {
-    /// Finds them for forces in groups of length `m`; `None` where they are more than `most`, or else their number.
+    /// Finds the crosses for forces in groups of length `m`; returns their number, or `None` where there are more
+    /// than `most`.
     ///
     /// # Errors
     /// `OutOfMemory`; those of the forces.
@@ -98,7 +99,8 @@ impl Crosses {
         Ok(Some(self.rank))
     }
 
-    /// Takes the cross through a number away from the rest of m rows: its column to `left`, its row over the number to `rows`.
+    /// Subtracts the cross through a number from the remaining m rows; its column goes to `left`, its row divided by
+    /// the number to `rows`.
     fn take_cross(&mut self, m: usize, ((i, j), pivot): ((usize, usize), f64)) -> Result<()> {
         let (first, row) = (self.left.len(), self.rows.len());
         try_extend(&mut self.left, &self.rest[j * m..(j + 1) * m], CONTEXT)?;
@@ -116,7 +118,7 @@ impl Crosses {
         Ok(())
     }
 
-    /// C = I + Vᵀ D⁻¹ G U, column-major; `u` is memory for all unknowns.
+    /// Fills in the core matrix C = I + Vᵀ D⁻¹ G U, column-major; `u` is memory for all unknowns.
     ///
     /// # Errors
     /// Those of the forces.
@@ -134,7 +136,7 @@ impl Crosses {
         Ok(())
     }
 
-    /// x = Vᵀ u
+    /// x ← Vᵀ u.
     pub fn reduce(&self, m: usize, u: &[f64], x: &mut [f64]) {
         x.fill(0.0);
         for group in self.groups.iter().filter(|group| group.rank > 0) {
@@ -147,7 +149,7 @@ impl Crosses {
         }
     }
 
-    /// w = U x
+    /// w ← U x.
     pub fn expand(&self, m: usize, x: &[f64], w: &mut [f64]) {
         w.fill(0.0);
         for group in &self.groups {
@@ -158,7 +160,7 @@ impl Crosses {
     }
 }
 
-/// Row and column of the number of largest size, and that number.
+/// Finds the number of largest size, with its row and column.
 struct Largest<'a> {
     m: usize,
     rest: &'a [f64],
@@ -190,7 +192,7 @@ impl WithSimd for Largest<'_> {
     }
 }
 
-/// Takes a column times a row away from a matrix.
+/// Subtracts the product of a column and a row from a matrix.
 struct Subtraction<'a> {
     column: &'a [f64],
     row: &'a [f64],

@@ -14,7 +14,7 @@ pub struct DenseSystem {
     matrix: Vec<f64>,
     active: Vec<bool>,
     column: Vec<f64>,
-    /// Matrix and column, one after the other, of the two updates before, the newest first, where they are small.
+    /// Matrix and column of the last two updates, one after the other, the newest first, where the matrix is small.
     before: [Vec<f64>; 2],
     scales: (f64, f64),
     row: Vec<f64>,
@@ -43,12 +43,12 @@ impl DenseSystem {
         })
     }
 
-    /// Memory of the matrix and of the flags of its columns, for a caller that fills a block of its own.
+    /// Memory of the matrix and of the marks of its columns, for a caller that fills in a block itself.
     pub(super) fn memory(&mut self) -> (&mut [f64], &mut [bool]) {
         (&mut self.matrix, &mut self.active)
     }
 
-    /// Column, units and row of the border, for the same caller.
+    /// Sets column, units and row of the border, for a caller that fills in a block itself.
     pub(super) fn set_border(
         &mut self,
         column: impl Iterator<Item = f64>,
@@ -64,7 +64,7 @@ impl DenseSystem {
         self.scales = scales;
     }
 
-    /// Unit of the unknowns.
+    /// Unit of the unknowns, by which their columns are scaled.
     pub(super) fn unit(&self) -> f64 {
         self.scales.0
     }
@@ -84,7 +84,7 @@ impl DenseSystem {
         )
     }
 
-    /// Solves in place with the factors.
+    /// Solves in place with the current factors.
     pub(super) fn solve_by_factors(&mut self, b: &mut [f64]) {
         self.factors.solve(b);
     }

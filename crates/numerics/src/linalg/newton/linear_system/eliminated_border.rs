@@ -4,7 +4,7 @@ use crate::error::{Result, try_vec};
 use crate::linalg::dot;
 use crate::linalg::newton::linear_system::Border;
 
-/// z = B⁻¹ r, the row t, the units, and t_p − s_p/s_u t_u z.
+/// Solved column z = B⁻¹ r, row t, units, and pivot t_p − s_p/s_u t_u z.
 pub(super) struct EliminatedBorder {
     column: Vec<f64>,
     row: Vec<f64>,
@@ -27,14 +27,14 @@ impl EliminatedBorder {
         })
     }
 
-    /// The column r, of which [`Self::set`] is to be given B⁻¹ r in the same memory.
+    /// The column r. The caller must solve for B⁻¹ r in the same memory, and pass it to [`Self::set`].
     pub fn column(&mut self, border: Border<'_>) -> Vec<f64> {
         let mut column = core::mem::take(&mut self.column);
         column.copy_from_slice(border.column);
         column
     }
 
-    /// Takes over a border with its solved column.
+    /// Stores a border with its solved column.
     pub fn set(&mut self, border: Border<'_>, solved: Vec<f64>) {
         self.column = solved;
         self.row.copy_from_slice(border.row);
@@ -43,7 +43,7 @@ impl EliminatedBorder {
         self.rest = self.row[n] - self.scales.1 / self.scales.0 * dot(&self.row[..n], &self.column);
     }
 
-    /// Solves with the whole matrix where v already holds B⁻¹ of its first numbers.
+    /// Solves with the whole matrix, for a v whose first numbers already hold the solution with B.
     pub fn solve(&self, v: &mut [f64]) {
         let n = self.column.len();
         let (unit, of_parameter) = self.scales;
@@ -55,7 +55,7 @@ impl EliminatedBorder {
         v[n] = along;
     }
 
-    /// Whether the determinant of the whole matrix has the sign of that of B.
+    /// Whether the determinants of the whole matrix and of B have the same sign.
     pub fn keeps_sign(&self) -> bool {
         self.rest >= 0.0
     }

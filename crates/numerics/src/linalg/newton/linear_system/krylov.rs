@@ -26,27 +26,27 @@ pub struct KrylovSystem {
     block: DenseSystem,
     lengths: Lengths,
     pairs: Pairs,
-    /// Factors of a wheel, instead of block and pairs.
+    /// Factors of a wheel, in place of block and pairs; `None` elsewhere.
     wheel: Option<Box<WheelFactors>>,
     memory: Gmres,
     most_products: usize,
-    /// Products of the last solution.
+    /// Number of products of the last solution.
     products: usize,
-    /// Products for each digit with the factors of the matrix itself, and whether those stored are.
+    /// Number of products per digit with the factors of the matrix itself; and whether the stored factors are those.
     of_own_factors: f64,
     are_own: bool,
-    /// Sign of det K M⁻¹ that the last solution showed.
+    /// Whether det K M⁻¹ is positive, as the last solution showed.
     positive: bool,
     column: Vec<f64>,
     scales: (f64, f64),
     row: Vec<f64>,
-    /// Right side of the block, preconditioned vector, and its scaled unknowns.
+    /// Right-hand side of the block, preconditioned vector, and scaled unknowns.
     reduced: Vec<f64>,
     product: Vec<f64>,
     scaled: Vec<f64>,
 }
 
-/// Factors of a wheel: those of its waves, or those of terms of low rank where they were factored last.
+/// Factors of a wheel: of its waves, or of terms of low rank where these were factored last.
 struct WheelFactors {
     waves: RingFactors,
     rank: RankFactors,
@@ -90,21 +90,21 @@ impl WheelFactors {
     }
 }
 
-/// Lengths within the groups of unknowns.
+/// Division of the unknowns into groups, and of each group into parts.
 #[derive(Clone, Copy, Debug)]
 pub struct Lengths {
-    /// Length of a group.
+    /// Length of each group.
     pub group: usize,
-    /// Numbers of each group that are in the block.
+    /// Number of the first numbers of each group that belong to the block.
     pub part: usize,
-    /// End of the pairs behind the block whose mean coupling is factored.
+    /// End of the pairs, after the block, whose mean coupling is factored.
     pub middle: usize,
-    /// Unknowns behind the groups, which are in the block.
+    /// Number of unknowns after the groups, which belong to the block.
     pub behind: usize,
 }
 
 impl Lengths {
-    /// Those of a wheel, which has neither block nor pairs.
+    /// Lengths for a wheel, which has neither block nor pairs.
     pub(super) fn of_ring(group: usize) -> Self {
         Self {
             group,
@@ -114,16 +114,16 @@ impl Lengths {
         }
     }
 
-    /// Positions of these pairs in a group.
+    /// Positions in a group of the pairs that are factored.
     fn pairs(self) -> impl Iterator<Item = usize> {
         (self.part..self.middle.saturating_sub(1)).step_by(2)
     }
 }
 
-/// Factors of the mean coupling of each pair, with memory for one of them.
+/// Factors of the mean coupling of each pair, with memory for one pair.
 struct Pairs {
     factors: Vec<Lu<Complex64>>,
-    /// Whether the factors of each pair exist; a singular matrix has none, and the identity serves.
+    /// For each pair, whether its factors exist; for a singular matrix the identity is used.
     regular: Vec<bool>,
     b: Vec<Complex64>,
 }
@@ -169,8 +169,8 @@ impl Pairs {
 }
 
 impl KrylovSystem {
-    /// Memory for `n` unknowns in groups of equal length and those behind them. A solution that takes more
-    /// products than `most_products` fails.
+    /// Memory for `n` unknowns, in groups of equal length and after these. A solution that takes more products than
+    /// `most_products` fails.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -197,7 +197,7 @@ impl KrylovSystem {
         })
     }
 
-    /// The same for the sectors of a wheel.
+    /// Memory for `n` unknowns in the sectors of a wheel.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -215,7 +215,8 @@ impl KrylovSystem {
         })
     }
 
-    /// Numbers of the block among those of all groups, with those behind the groups; the last one, of the parameter, included.
+    /// Numbers of v that belong to the block: in all groups, and after the groups; the last one, of the parameter,
+    /// included.
     fn of_block(v: &[f64], lengths: Lengths) -> impl Iterator<Item = f64> {
         let (u, behind) = v.split_at(v.len() - 1 - lengths.behind);
         let inner = u
@@ -224,7 +225,7 @@ impl KrylovSystem {
         inner.chain(behind.iter().copied())
     }
 
-    /// v ← M⁻¹ v
+    /// v ← M⁻¹ v with the preconditioner M.
     fn precondition(
         (block, pairs, wheel): (&mut DenseSystem, &mut Pairs, &mut Option<Box<WheelFactors>>),
         jacobian: &mut dyn Jacobian,
@@ -253,7 +254,8 @@ impl KrylovSystem {
         Ok(())
     }
 
-    /// Solves by GMRES with the factors made last, in at most so many products.
+    /// Solves by GMRES with the last factors as preconditioner, in at most `most` products; `false` if it does not
+    /// converge.
     fn iterate(
         &mut self,
         jacobian: &mut dyn Jacobian,
@@ -293,7 +295,7 @@ impl KrylovSystem {
     }
 }
 
-/// The products of a Jacobian.
+/// The Jacobian as an operator with products.
 fn operator(jacobian: &mut dyn Jacobian) -> Result<&mut dyn MatrixFree> {
     match jacobian.matrix_free() {
         Some(operator) => Ok(operator),
@@ -301,7 +303,7 @@ fn operator(jacobian: &mut dyn Jacobian) -> Result<&mut dyn MatrixFree> {
     }
 }
 
-/// out = K x
+/// out ← K x.
 fn product(
     jacobian: &mut dyn Jacobian,
     (column, scales, row): (&[f64], (f64, f64), &[f64]),
@@ -415,7 +417,8 @@ impl LinearSystem for KrylovSystem {
         self.products
     }
 
-    /// det K = det M · det K M⁻¹, and the determinant of a complex matrix taken as a real one is positive.
+    /// Sign of det K = det M · det K M⁻¹. The determinant of a complex matrix that is treated as a real one is
+    /// positive.
     fn is_positive(&self) -> bool {
         let factors = match &self.wheel {
             Some(wheel) => wheel.is_positive(),

@@ -28,14 +28,14 @@ pub trait Jacobian {
     /// Number n of unknowns.
     fn size(&self) -> usize;
 
-    /// Fills J, column-major, and tells of each column whether it differs from that of the identity.
+    /// Fills J, column-major, and marks each column that differs from that of the identity.
     ///
     /// # Errors
     /// `StoppedByCaller`.
     fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) -> Result<()>;
 
-    /// out = J d at the point evaluated last, for less work than [`Self::fill`]; `false` where the problem has no such
-    /// product.
+    /// out ← J d at the point evaluated last, for less work than [`Self::fill`]; `false` where the problem has no
+    /// such product.
     ///
     /// # Errors
     /// `StoppedByCaller`.
@@ -48,24 +48,24 @@ pub trait Jacobian {
         false
     }
 
-    /// The same Jacobian by products, where the problem has them.
+    /// The Jacobian as an operator with products, where the problem has them; else `None`.
     fn matrix_free(&mut self) -> Option<&mut dyn MatrixFree> {
         None
     }
 }
 
-/// A Jacobian J by products. The unknowns are groups of equal length, packed signals, whose first numbers couple most, and
-/// behind them few that couple with all.
+/// A Jacobian J by products. The unknowns are groups of equal length (packed signals), whose first numbers couple
+/// most, followed by few unknowns that couple with all.
 pub trait MatrixFree {
     /// Length of one group.
     fn group(&self) -> usize;
 
-    /// Number of unknowns behind the groups; they are always in the block.
+    /// Number of unknowns after the groups; they always belong to the block.
     fn behind(&self) -> usize {
         0
     }
 
-    /// Number of columns that differ from those of the identity.
+    /// Number of columns of J that differ from those of the identity.
     fn coupled(&self) -> usize;
 
     /// Whether the last numbers of a group couple as much as the first, so that factors of a block help an iteration little.
@@ -73,24 +73,26 @@ pub trait MatrixFree {
         false
     }
 
-    /// Fills the block of J between the first `part` numbers of each group and those behind, column-major, and tells of each of its
-    /// columns whether it differs from that of the identity.
+    /// Fills the block of J between the first `part` numbers of each group and the unknowns after the groups,
+    /// column-major, and marks each of its columns that differs from that of the identity.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
     fn fill_block(&mut self, part: usize, matrix: &mut [f64], active: &mut [bool]) -> Result<()>;
 
-    /// Fills the complex matrix, column-major, by which J acts on average on one pair of numbers of each group, taken as
-    /// `x[at] + i·x[at + 1]`: the part of its 2 × 2 blocks that commutes with i.
+    /// Fills the complex matrix, column-major, by which J acts on average on one pair of numbers of each group, taken
+    /// as `x[at] + i·x[at + 1]`: the part of its 2 × 2 blocks that commutes with i.
     fn fill_pair(&mut self, at: usize, matrix: &mut [Complex64]);
 
-    /// The sectors of a wheel, where the groups of one stand after those of another; with unknowns behind the groups there are none.
+    /// Sectors of a wheel, where the groups of one sector follow those of another; `None` for other structures, and
+    /// where unknowns follow the groups.
     fn ring(&self) -> Option<Ring<'_>> {
         None
     }
 
-    /// Fills the block of the wave p of [`Self::ring`], column-major and of the order of a sector: that of the mean of J over the
-    /// sectors, each in its own time, at the point evaluated last. Wave 0 comes first.
+    /// Fills the block of wave p of [`Self::ring`], column-major and of the order of a sector: it belongs to the mean
+    /// of J over the sectors, each in its own time, at the point evaluated last. Waves are filled in order, beginning
+    /// with wave 0.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
@@ -98,7 +100,7 @@ pub trait MatrixFree {
         fail!(Internal, "a matrix that has no sectors")
     }
 
-    /// J by the forces of its groups, where it is that of a wheel.
+    /// J by the forces of its groups, for a wheel; `None` for other structures.
     fn forces(&mut self) -> Option<&mut dyn Forces> {
         None
     }
@@ -110,7 +112,7 @@ pub trait MatrixFree {
     /// `OutOfMemory`.
     fn keep(&mut self) -> Result<()>;
 
-    /// out = J d with the J that was kept last.
+    /// out ← J d with the J that was kept last.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
@@ -119,7 +121,7 @@ pub trait MatrixFree {
 
 /// A Jacobian J = D + G F with a diagonal D, a flexibility G, and the derivatives F of forces in groups by motions in groups.
 pub trait Forces {
-    /// Number of groups.
+    /// Number of groups of forces and motions.
     fn groups(&self) -> usize;
 
     /// Share of F, by its norm, in which sectors differ from their mean at the point evaluated last.
@@ -128,42 +130,43 @@ pub trait Forces {
     /// `StoppedByCaller`.
     fn unlikeness(&mut self) -> Result<f64>;
 
-    /// Takes the rows of F of one group at the point evaluated last to `rows`, a block of columns for each motion that it adds to
-    /// `motions`, none where all are zero; returns the stiffness that the numbers are compared with.
+    /// Writes the rows of F that belong to one group at the point evaluated last to `rows`, a block of columns for
+    /// each motion group, whose index it adds to `motions`; both stay empty where all are zero. Returns the stiffness
+    /// with which the numbers are compared.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
     fn rows(&mut self, force: usize, rows: &mut Vec<f64>, motions: &mut Vec<usize>) -> Result<f64>;
 
-    /// u = G w for forces w of one group.
+    /// u ← G w for the forces w of one group.
     ///
     /// # Errors
     /// `StoppedByCaller`.
     fn response_of(&mut self, force: usize, w: &[f64], u: &mut [f64]) -> Result<()>;
 
-    /// u ← u − D⁻¹ G w
+    /// u ← u − D⁻¹ G w.
     ///
     /// # Errors
     /// `StoppedByCaller`.
     fn subtract_response(&mut self, w: &[f64], u: &mut [f64]) -> Result<()>;
 
-    /// u ← D⁻¹ u
+    /// u ← D⁻¹ u.
     fn divide(&self, u: &mut [f64]);
 }
 
-/// Sectors whose groups of unknowns stand one after another.
+/// Sectors of a wheel whose groups of unknowns follow each other.
 #[derive(Clone, Copy, Debug)]
 pub struct Ring<'a> {
     /// Number N of sectors.
     pub sectors: usize,
-    /// Per pair of numbers of a group its factor λ from a sector to the next.
+    /// Per pair of numbers of a group, the factor λ from one sector to the next.
     pub lags: &'a [Complex64],
 }
 
-/// The rest of the bordered matrix K.
+/// The rest of the bordered matrix K beside J: column, units and row.
 #[derive(Clone, Copy, Debug)]
 pub struct Border<'a> {
-    /// r = ∂R/∂p
+    /// Column r = ∂R/∂p.
     pub column: &'a [f64],
     /// Units of the unknowns and of the parameter.
     pub scales: (f64, f64),
@@ -173,21 +176,21 @@ pub struct Border<'a> {
 
 /// A bordered system K x = b with its memory.
 pub trait LinearSystem {
-    /// Takes over the matrix of the point that the problem was evaluated at last; factors made before stay.
+    /// Takes over the matrix at the point where the problem was evaluated last; former factors are kept.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
     fn update(&mut self, jacobian: &mut dyn Jacobian, border: Border<'_>, interrupt: &Interrupt<'_>) -> Result<()>;
 
-    /// Factors the matrix that was taken over last, with the Jacobian still at its point.
+    /// Factors the matrix of the last update; the Jacobian must still be at its point.
     ///
     /// # Errors
     /// `Singular`; `StoppedByCaller`.
     fn factor(&mut self, jacobian: &mut dyn Jacobian, interrupt: &Interrupt<'_>) -> Result<()>;
 
-    /// Solves in place for n + 1 numbers with the matrix that was factored last, to this relative residual; `false` where
-    /// an iteration did not converge. `jacobian` is that of the problem of [`Self::update`], which may have been
-    /// evaluated elsewhere since.
+    /// Solves in place for n + 1 numbers with the matrix that was factored last, to this relative residual; `false`
+    /// where an iteration did not converge. `jacobian` belongs to the problem of [`Self::update`], which may have
+    /// been evaluated elsewhere since.
     ///
     /// # Errors
     /// `OutOfMemory`, and those of products; `StoppedByCaller`.
@@ -199,20 +202,20 @@ pub trait LinearSystem {
         interrupt: &Interrupt<'_>,
     ) -> Result<bool>;
 
-    /// out = K x with the matrix that was taken over last.
+    /// out ← K x with the matrix of the last update.
     ///
     /// # Errors
     /// `OutOfMemory`, and those of products.
     fn apply(&mut self, jacobian: &mut dyn Jacobian, x: &[f64], out: &mut [f64]) -> Result<()>;
 
-    /// out = (w₀K + w₁K₁ + w₂K₂) x with the matrices taken over last, the newest first, but for their rows, of which out has 0;
-    /// `false` where they are not kept.
+    /// out ← (w₀K + w₁K₁ + w₂K₂) x with the matrices of the last three updates, the newest first, without their last
+    /// rows, for which `out` holds 0. `false` where these matrices are not kept.
     fn apply_last(&mut self, _weights: [f64; 3], _x: &[f64], _out: &mut [f64]) -> bool {
         false
     }
 
-    /// Solves in place with the matrix that was taken over last by the factors of an earlier one, to a relative error
-    /// of `tolerance`. `false`, with `b` as it was, where new factors are needed or are quicker.
+    /// Solves in place with the matrix of the last update by the factors of an earlier one, to a relative error of
+    /// `tolerance`. Returns `false`, with `b` unchanged, where new factors are needed or are quicker.
     ///
     /// # Errors
     /// `OutOfMemory`, and those of products; `StoppedByCaller`.
@@ -224,7 +227,8 @@ pub trait LinearSystem {
         interrupt: &Interrupt<'_>,
     ) -> Result<bool>;
 
-    /// Solves directly from the next update on, where an iteration did not converge; `false` where that is so already.
+    /// Solves directly from the next update on, after an iteration that did not converge; `false` if solutions are
+    /// direct already.
     fn solve_directly(&mut self) -> bool {
         false
     }

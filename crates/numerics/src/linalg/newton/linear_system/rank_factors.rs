@@ -31,13 +31,13 @@ const BASIS_OF_WAVES: usize = 40;
 /// Kind: tuned; measured on: wheels of 24 sectors.
 const ALIKE_SECTORS: f64 = 0.3;
 
-/// Factors of C, with memory.
+/// Factors of the core matrix C, with memory.
 pub(super) struct RankFactors {
     crosses: Crosses,
     lu: Option<Lu<f64>>,
-    /// Length of a group.
+    /// Length of each group.
     group: usize,
-    /// Multiplications of a product with waves.
+    /// Multiplications of one product with factors of waves.
     of_product: f64,
     x: Vec<f64>,
     u: Vec<f64>,
@@ -45,7 +45,7 @@ pub(super) struct RankFactors {
 }
 
 impl RankFactors {
-    /// Memory for `n` unknowns of so many sectors.
+    /// Memory for `n` unknowns in `sectors` sectors.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -62,7 +62,7 @@ impl RankFactors {
         })
     }
 
-    /// Factors a Jacobian; `false` where its waves serve better.
+    /// Factors a Jacobian; `false` where factors of its waves are better.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
@@ -96,7 +96,7 @@ impl RankFactors {
         }
     }
 
-    /// Highest rank of n unknowns whose factors take no more multiplications than iterations with waves.
+    /// Highest rank at which the factors take no more multiplications than iterations with waves.
     fn most(&self, unlikeness: f64, n: usize) -> usize {
         let products = (PRODUCTS_OF_WAVES / (1.0 - unlikeness).powi(2)).min(MOST_PRODUCTS_OF_WAVES);
         let of_rank = |rank: usize| (rank * rank) as f64 * (rank as f64 / 3.0 + self.group as f64);
@@ -105,7 +105,7 @@ impl RankFactors {
             .count()
     }
 
-    /// Takes over the border of the matrix.
+    /// Takes over the border of the bordered matrix.
     ///
     /// # Errors
     /// Those of the forces.
@@ -127,7 +127,7 @@ impl RankFactors {
         Ok(())
     }
 
-    /// u ← J⁻¹ u
+    /// u ← J⁻¹ u.
     fn solve_inner(&mut self, forces: &mut dyn Forces, u: &mut [f64]) -> Result<()> {
         let Some(lu) = &self.lu else { return Ok(()) };
         let x = &mut self.x[..lu.order()];

@@ -22,23 +22,23 @@ use pulp::{Arch, Simd, WithSimd};
 
 const CONTEXT: &str = "the linear system of a wheel";
 
-/// Factors of one wave.
+/// Factors of the block of one wave.
 enum Wave {
     Real(Lu<f64>),
     Complex(Lu<Complex64>),
-    /// The block is singular, and the identity serves.
+    /// No factors, since the block is singular; the identity is used.
     Singular,
 }
 
-/// Factors of all waves, with memory.
+/// Factors of all waves of a wheel, with memory.
 pub(super) struct RingFactors {
     sectors: usize,
-    /// Numbers of a group, and of a sector.
+    /// Length of a group, and number of unknowns of a sector.
     group: usize,
     order: usize,
-    /// e^{−2πi k/N}
+    /// Roots e^{−2πi k/N}, k = 0 .. N − 1.
     roots: Vec<Complex64>,
-    /// Λˢ, pair after pair of each sector.
+    /// Factors Λˢ of each sector, pair after pair.
     turns: Vec<Complex64>,
     waves: Vec<Wave>,
     matrix: Vec<Complex64>,
@@ -127,7 +127,7 @@ impl RingFactors {
         Ok(())
     }
 
-    /// Takes over the border of the matrix.
+    /// Takes over the border of the bordered matrix.
     pub fn set_border(&mut self, border: Border<'_>) {
         let mut column = self.border.column(border);
         self.solve_inner(&mut column);
@@ -150,13 +150,13 @@ impl RingFactors {
         real.count().is_multiple_of(2) == self.border.keeps_sign()
     }
 
-    /// u ← B⁻¹ u
+    /// u ← B⁻¹ u.
     fn solve_inner(&mut self, u: &mut [f64]) {
         Arch::new().dispatch(Inner { factors: self, u });
     }
 }
 
-/// u ← B⁻¹ u, compiled for the vector instructions of the processor.
+/// Computes u ← B⁻¹ u, compiled for the vector instructions of the processor.
 struct Inner<'a> {
     factors: &'a mut RingFactors,
     u: &'a mut [f64],
@@ -218,7 +218,7 @@ impl RingFactors {
     }
 }
 
-/// Multiplies the pairs of the groups of sector s by Λˢ, or by its inverse.
+/// Multiplies the pairs in the groups of sector s by Λˢ, or if `back` by its inverse.
 fn turn((x, group): (&mut [f64], usize), turns: &[Complex64], (s, sectors): (usize, usize), back: bool) {
     let pairs = turns.len() / sectors;
     let turns = &turns[s * pairs..(s + 1) * pairs];
