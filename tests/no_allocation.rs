@@ -6,6 +6,7 @@
 
 mod common;
 
+use crate::common::models::unit_chain;
 use common::{BASE, harmonics};
 use hbvib::internals::Evaluation;
 use hbvib::internals::HarmonicBalance;
@@ -209,26 +210,11 @@ fn many_contacts_along_a_sweep_allocate_only_where_a_panel_is_laid() {
     // A chain of 48 masses, each rubbing on the ground: the flexibility is interpolated, contacts
     // that stick drop out of Newton's equations.
     let n = 48;
-    let mut model = Model::new(n).unwrap();
-    let mut stiffness = vec![0.0; n * n];
-    let mut mass = vec![0.0; n * n];
-    for i in 0..n {
-        mass[i * n + i] = 1.0;
-        stiffness[i * n + i] = 2.0;
-        if i > 0 {
-            stiffness[i * n + i - 1] = -1.0;
-            stiffness[(i - 1) * n + i] = -1.0;
-        }
-        model.add_contact(&Contact::jenkins(i, None, 0.5, 0.1, 1.0)).unwrap();
-    }
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &mass))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &stiffness))
-        .unwrap();
-    model.set_rayleigh(0.0, 0.02).unwrap();
-    model.add_force(0, 1, 1.0.into()).unwrap();
+    let model = unit_chain(n)
+        .contacts((0..n).map(|i| Contact::jenkins(i, None, 0.5, 0.1, 1.0)))
+        .rayleigh(0.0, 0.02)
+        .force(0, 1, 1.0)
+        .build();
     let options = options(3, 0);
     let condensed = Condensed::new(&model, &options, 0.8, &Interrupt::none()).unwrap();
     assert_eq!(condensed.reference(), Reference::Stuck);

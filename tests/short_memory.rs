@@ -4,10 +4,11 @@
 //! Large requests beyond the limit fail, so that a matrix that is asked for without a check ends this test with a message of the
 //! runtime. Small ones are served, and those of products, as the reserve of the shared library does.
 
-use hbvib::{
-    Contact, FloquetOptions, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, Status, Waves,
-    floquet, forced_response,
-};
+mod common;
+
+use crate::common::models::Structure;
+use crate::common::{harmonics, omega_range};
+use hbvib::{Contact, FloquetOptions, Hooks, MatrixKind, MatrixView, Model, Status, Waves, floquet, forced_response};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
@@ -82,7 +83,6 @@ const MODES: usize = 8;
 /// Sectors of springs and masses in a row, the last mass on a spring so stiff that stability is computed on modes and sliders; contacts on
 /// half of the others.
 fn rubbing_wheel(sectors: usize, engine_order: i64) -> Model {
-    let mut model = Model::cyclic(N, sectors).unwrap();
     let (mut mass, mut stiffness) = (vec![0.0; N * N], vec![0.0; N * N]);
     for i in 0..N {
         mass[i * N + i] = if i + 1 < N { 0.2 } else { 1e-4 };
@@ -93,9 +93,7 @@ fn rubbing_wheel(sectors: usize, engine_order: i64) -> Model {
             stiffness[i * N + i - 1] -= 8.0;
         }
     }
-    for (kind, values) in [(MatrixKind::Mass, &mass), (MatrixKind::Stiffness, &stiffness)] {
-        model.set_matrix(kind, &MatrixView::dense(N, values)).unwrap();
-    }
+    let mut model = Structure::cyclic(N, sectors).mass(&mass).stiffness(&stiffness).build();
     let mut next = vec![0.0; N * N];
     next[N + 1] = -0.3;
     let next = MatrixView::dense(N, &next);
@@ -112,16 +110,8 @@ fn rubbing_wheel(sectors: usize, engine_order: i64) -> Model {
 }
 
 fn stays_within(model: &Model) {
-    let solver = SolverOptions {
-        harmonics: 9,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    };
-    let range = ForcedOptions {
-        omega_start: 2.4,
-        omega_stop: 2.4,
-        ..ForcedOptions::default()
-    };
+    let solver = harmonics(9);
+    let range = omega_range(2.4, 2.4);
     let branch = forced_response(model, &solver, &range, &mut Hooks::default()).unwrap();
     let options = FloquetOptions {
         waves: Waves::Wheel,

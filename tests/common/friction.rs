@@ -1,6 +1,7 @@
 //! Motions in two directions under friction with a varying normal load, and the law marched over
 //! samples, for its tests.
 
+use crate::common::random;
 use hbvib::Interrupt;
 use hbvib::internals::CoupledPiece;
 use hbvib::internals::Evaluation;
@@ -34,11 +35,7 @@ pub struct Random(pub u64);
 
 impl Random {
     pub fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        random::signed(&mut self.0)
     }
 
     /// A packed motion of size about 1.

@@ -1,28 +1,20 @@
 //! A contact of every law in a vibration, for the tests of the states inside contacts.
 
 use crate::common::energy::exactly;
+use crate::common::models::dense;
 use crate::common::solve_at;
-use hbvib::{
-    Branch, Call, Constant, Contact, ContactKind, MatrixKind, MatrixView, Model, Polynomial, SolverOptions, Table,
-    User, UserForce,
-};
+use hbvib::{Branch, Call, Constant, Contact, ContactKind, Model, Polynomial, SolverOptions, Table, User, UserForce};
 use num_complex::Complex64;
 use std::sync::Arc;
 
 /// Three masses, coupled and damped: 0 and 1 move along a surface, 2 along its normal.
 pub fn structure() -> Model {
-    let mut model = Model::new(3).unwrap();
-    for (kind, values) in [
-        (MatrixKind::Mass, [1.0, 0.0, 0.0, 0.0, 1.2, 0.0, 0.0, 0.0, 0.8]),
-        (
-            MatrixKind::Damping,
-            [0.06, 0.0, -0.01, 0.0, 0.05, 0.0, -0.01, 0.0, 0.04],
-        ),
-        (MatrixKind::Stiffness, [4.0, -0.5, 0.2, -0.5, 5.0, -0.3, 0.2, -0.3, 6.0]),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(3, &values)).unwrap();
-    }
-    model
+    dense(
+        &[1.0, 0.0, 0.0, 0.0, 1.2, 0.0, 0.0, 0.0, 0.8],
+        &[4.0, -0.5, 0.2, -0.5, 5.0, -0.3, 0.2, -0.3, 6.0],
+    )
+    .damping(&[0.06, 0.0, -0.01, 0.0, 0.05, 0.0, -0.01, 0.0, 0.04])
+    .build()
 }
 
 pub type Forces = Vec<(usize, usize, Complex64)>;

@@ -1,10 +1,9 @@
 //! Shared code of the tests of laws in time: structures for them, and the comparison of harmonic balance with the
 //! motion in time.
 
+use crate::common::models::dense;
 use crate::common::{all_harmonics, harmonics, relative_gap, solve_at};
-use hbvib::{
-    Constant, Contact, Error, Hooks, MatrixKind, MatrixView, Model, Status, TimeOptions, TimeResponse, time_response,
-};
+use hbvib::{Constant, Contact, Error, Hooks, Model, Status, TimeOptions, TimeResponse, time_response};
 use num_complex::Complex64;
 
 /// Harmonics that are compared.
@@ -14,28 +13,18 @@ pub const COMMON: usize = 5;
 pub const SAMPLES: usize = 200;
 
 /// A structure with contacts and forces (degree of freedom, harmonic, value).
-pub fn model(n: usize, [m, c, k]: [&[f64]; 3], contacts: &[Contact], forces: &[(usize, usize, Complex64)]) -> Model {
-    let mut model = Model::new(n).unwrap();
-    for (which, a) in [
-        (MatrixKind::Mass, m),
-        (MatrixKind::Damping, c),
-        (MatrixKind::Stiffness, k),
-    ] {
-        model.set_matrix(which, &MatrixView::dense(n, a)).unwrap();
-    }
-    for contact in contacts {
-        model.add_contact(contact).unwrap();
-    }
-    for &(dof, harmonic, value) in forces {
-        model.add_force(dof, harmonic, value).unwrap();
-    }
-    model
+pub fn model([m, c, k]: [&[f64]; 3], contacts: &[Contact], forces: &[(usize, usize, Complex64)]) -> Model {
+    dense(m, k)
+        .damping(c)
+        .contacts(contacts)
+        .forces(forces.iter().copied())
+        .build()
 }
 
 /// Mass 1, damping 0.05, stiffness 1 with a contact to the ground under a force of harmonic 1 and a mean one.
 pub fn oscillator(contact: Contact, force: f64, mean: f64) -> Model {
     let forces = [(0, 1, force.into()), (0, 0, mean.into())];
-    model(1, [&[1.0], &[0.05], &[1.0]], &[contact], &forces)
+    model([&[1.0], &[0.05], &[1.0]], &[contact], &forces)
 }
 
 pub const MASS: [f64; 9] = [1.0, 0.1, 0.0, 0.1, 1.2, 0.0, 0.0, 0.0, 0.8];
@@ -48,7 +37,7 @@ pub const BETA: f64 = 0.04;
 /// Masses that move along the surface (0) and along its normal (1), coupled; and one beyond (2).
 pub fn slanted(contacts: &[Contact], forces: &[(usize, usize, Complex64)]) -> Model {
     let c = STIFFNESS.map(|k| BETA * k);
-    model(3, [&MASS, &c, &STIFFNESS], contacts, forces)
+    model([&MASS, &c, &STIFFNESS], contacts, forces)
 }
 
 pub const KT: f64 = 2.0;

@@ -14,18 +14,25 @@ pub mod laws;
 pub mod laws_in_time;
 pub mod markdown;
 pub mod mode_cases;
+pub mod models;
 pub mod modes;
+pub mod options;
 pub mod peers;
 pub mod plane;
 pub mod plane_step;
 pub mod pointwise;
 pub mod programs;
+pub mod random;
 pub mod refusal;
 pub mod rest;
 pub mod rotating;
 pub mod stencil;
 pub mod stopping;
 
+#[allow(unused_imports, reason = "each test crate uses its own part")]
+pub use options::{amplitude_range, at_dof, harmonics, omega_range};
+
+use crate::common::models::{Structure, oscillator};
 use hbvib::{
     Branch, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Part, SolverOptions, forced_response,
 };
@@ -165,18 +172,13 @@ impl Blisk {
     /// One sector under the engine order, without contact.
     pub fn sector_without_contact(&self) -> Model {
         let a = self.matrices();
-        let mut model = Model::cyclic(a.n, SECTORS).unwrap();
-        model
-            .set_matrix(MatrixKind::Mass, &MatrixView::dense(a.n, &a.mass))
-            .unwrap();
-        model
-            .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(a.n, &a.own))
-            .unwrap();
-        model
-            .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(a.n, &a.next))
-            .unwrap();
-        model.set_rayleigh(0.0, BETA).unwrap();
-        model.set_wave(self.engine_order);
+        let mut model = Structure::cyclic(a.n, SECTORS)
+            .mass(&a.mass)
+            .stiffness(&a.own)
+            .next(MatrixKind::Stiffness, &a.next)
+            .rayleigh(0.0, BETA)
+            .wave(self.engine_order)
+            .build();
         for dof in [B2, B1] {
             model.add_force(dof, 1, self.force_value().into()).unwrap();
         }
@@ -280,15 +282,6 @@ pub fn phase(harmonic: usize, engine_order: i64, s: usize, sectors: usize) -> Co
     Complex64::cis(-TAU * turns as f64 / sectors as f64)
 }
 
-/// Options with a highest harmonic; all others are defaults.
-pub fn harmonics(highest: usize) -> SolverOptions {
-    SolverOptions {
-        harmonics: highest,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    }
-}
-
 /// Solves at one angular frequency.
 pub fn solve_at(model: &Model, solver: &SolverOptions, omega: f64) -> Branch {
     sweep(model, solver, omega, omega, &[])
@@ -338,17 +331,11 @@ pub fn slip(branch: &Branch, point: usize) -> f64 {
 
 /// One mass with a contact, m = k = 1.
 pub fn one_mass(damping: f64, contact: &Contact, force: f64) -> Model {
-    let mut model = Model::new(1).unwrap();
-    for (kind, value) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Damping, damping),
-        (MatrixKind::Stiffness, 1.0),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
-    }
-    model.add_contact(contact).unwrap();
-    model.add_force(0, 1, force.into()).unwrap();
-    model
+    oscillator(1.0, 1.0)
+        .damping(&[damping])
+        .contact(contact)
+        .force(0, 1, force)
+        .build()
 }
 
 /// Processor time of this thread where the system reports it (Linux), else the time of a clock: a busy machine then

@@ -1,10 +1,10 @@
 //! Shared code of the tests of nonlinear modes: models without structural damping, sectors without mirror symmetry,
 //! and a separate solver for the linear problems with two real unknowns.
 
+use crate::common::models::Structure;
 use crate::common::{Blisk, SECTORS, Wheel, all_harmonics, phase};
 use hbvib::{
-    Branch, Constant, Contact, Hooks, MatrixKind, MatrixView, ModeField, ModeOptions, Model, SolverOptions, Status,
-    nonlinear_mode,
+    Branch, Constant, Contact, Hooks, MatrixKind, ModeField, ModeOptions, Model, SolverOptions, Status, nonlinear_mode,
 };
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
@@ -160,21 +160,15 @@ impl Skewed {
     }
 
     pub fn model(&self, with_damping: bool) -> Model {
-        let mut model = Model::cyclic(N, self.sectors).unwrap();
-        let mut place = |which, own: &[f64], next: &[f64]| {
-            model.set_matrix(which, &MatrixView::dense(N, own)).unwrap();
-            model.set_coupling(which, &MatrixView::dense(N, next)).unwrap();
-        };
-        place(MatrixKind::Mass, &MASS, &MASS_NEXT);
-        place(MatrixKind::Stiffness, &STIFFNESS, &STIFFNESS_NEXT);
+        let mut sector = Structure::cyclic(N, self.sectors)
+            .mass(&MASS)
+            .next(MatrixKind::Mass, &MASS_NEXT)
+            .stiffness(&STIFFNESS)
+            .next(MatrixKind::Stiffness, &STIFFNESS_NEXT);
         if with_damping {
-            place(MatrixKind::Damping, &DAMPING, &DAMPING_NEXT);
+            sector = sector.damping(&DAMPING).next(MatrixKind::Damping, &DAMPING_NEXT);
         }
-        model.set_wave(self.engine_order);
-        for contact in &self.contacts {
-            model.add_contact(contact).unwrap();
-        }
-        model
+        sector.wave(self.engine_order).contacts(&self.contacts).build()
     }
 
     /// Places mass and stiffness all around a wheel.

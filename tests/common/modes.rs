@@ -1,7 +1,8 @@
 //! Structures whose linear modes are known, and checks of a mode.
 
+use crate::common::models::{Structure, diagonal};
 use crate::common::{B1, B2, BASE, D, NDOF, SECTORS, largest};
-use hbvib::{Contact, MatrixKind, MatrixView, Model, Spring};
+use hbvib::{Contact, MatrixKind, Model, Spring};
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 
@@ -62,30 +63,17 @@ pub fn assert_wave(shape: &[Complex64], diameter: f64) {
 /// stiffness 1; the other free.
 pub fn chains(chains: usize, length: usize) -> Model {
     let n = chains * length;
-    let mut model = Model::new(n).unwrap();
-    let mut mass = vec![0.0; n * n];
-    let springs: Vec<_> = (0..n)
-        .filter(|i| (i + 1) % length != 0)
-        .map(|i| Spring {
-            dof_a: Some(i),
-            dof_b: Some(i + 1),
-            sector_offset: 0,
-            stiffness: 1.0,
-        })
-        .collect();
-    for i in 0..n {
-        mass[i * n + i] = 1.0;
-    }
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &mass))
-        .unwrap();
-    model.add_springs(&springs).unwrap();
-    for c in 0..chains {
-        model
-            .add_contact(&Contact::jenkins(c * length, None, 1.0, 0.5, 1.0))
-            .unwrap();
-    }
-    model
+    let between = (0..n).filter(|i| (i + 1) % length != 0).map(|i| Spring {
+        dof_a: Some(i),
+        dof_b: Some(i + 1),
+        sector_offset: 0,
+        stiffness: 1.0,
+    });
+    Structure::plain(n)
+        .mass(&diagonal(&vec![1.0; n]))
+        .springs(between)
+        .contacts((0..chains).map(|c| Contact::jenkins(c * length, None, 1.0, 0.5, 1.0)))
+        .build()
 }
 
 /// Frequency k of a chain of unit masses, one end held by a unit spring.

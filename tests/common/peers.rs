@@ -1,20 +1,12 @@
 //! Structures on which other programs for harmonic balance were measured.
 
-use hbvib::{Contact, MatrixKind, MatrixView, Model};
+use crate::common::models::dense;
+use hbvib::{Contact, Model};
 use std::f64::consts::PI;
 
 /// A structure from column-major matrices.
 pub fn structure(mass: &[f64], damping: &[f64], stiffness: &[f64]) -> Model {
-    let n = mass.len().isqrt();
-    let mut model = Model::new(n).unwrap();
-    for (kind, values) in [
-        (MatrixKind::Mass, mass),
-        (MatrixKind::Damping, damping),
-        (MatrixKind::Stiffness, stiffness),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(n, values)).unwrap();
-    }
-    model
+    dense(mass, stiffness).damping(damping).build()
 }
 
 /// Four degrees of freedom of a bladed disk and its ring in a standing pattern, limit force 5 N, on which

@@ -1,5 +1,6 @@
 //! Friction in a plane, for its tests: random motions, one law, and comparisons of numbers.
 
+use crate::common::random;
 use hbvib::Interrupt;
 
 use hbvib::internals::Evaluation;
@@ -15,11 +16,7 @@ pub struct Random(pub u64);
 
 impl Random {
     pub fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        random::signed(&mut self.0)
     }
 
     pub fn motion(&mut self, set: &HarmonicSet, directions: usize, size: f64) -> Vec<f64> {

@@ -1,7 +1,8 @@
 //! The Iwan joint against its closed forms.
 
+use crate::common::models::oscillator;
 use crate::common::{harmonics, solve_at};
-use hbvib::{Constant, Contact, Iwan, MatrixKind, MatrixView, Model, contact_evaluate};
+use hbvib::{Constant, Contact, Iwan, contact_evaluate};
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -70,15 +71,7 @@ fn more_elements_converge_to_the_distribution() {
 
 #[test]
 fn a_joint_in_a_model_is_its_contacts() {
-    let mut model = Model::new(1).unwrap();
-    for (kind, value) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Damping, 0.1),
-        (MatrixKind::Stiffness, 100.0),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
-    }
-    model.add_force(0, 1, 2.0.into()).unwrap();
+    let mut model = oscillator(1.0, 100.0).damping(&[0.1]).force(0, 1, 2.0).build();
     let first = model.add_iwan(&sides(), &JOINT, 30).unwrap();
     assert_eq!((first, model.contacts().len()), (0, 30));
     let branch = solve_at(&model, &harmonics(1), 30.0);

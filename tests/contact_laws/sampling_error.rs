@@ -1,8 +1,9 @@
 //! The aliasing check of sampled laws: against the true error of their forces, from exact events or
 //! from many more samples.
 
-use crate::common::{all_harmonics, relative_gap, solve_at};
-use hbvib::{Contact, ContactKind, MatrixKind, MatrixView, Model, Polynomial, SolverOptions, Status, contact_evaluate};
+use crate::common::models::{dense, diagonal};
+use crate::common::{all_harmonics, harmonics, relative_gap, solve_at};
+use hbvib::{Contact, ContactKind, Model, Polynomial, SolverOptions, Status, contact_evaluate};
 use num_complex::Complex64;
 
 const HARMONICS: usize = 5;
@@ -10,37 +11,25 @@ const OMEGA: f64 = 1.2;
 
 /// Three masses on springs and coupled, each of them a direction of the contact, all forced.
 fn model(contact: &Contact) -> Model {
-    let diagonal = |x: [f64; 3], c: f64| [x[0], c, c, c, x[1], c, c, c, x[2]];
-    let mut model = Model::new(3).unwrap();
-    for (kind, values, coupling) in [
-        (MatrixKind::Mass, [1.0, 1.0, 1.0], 0.0),
-        (MatrixKind::Damping, [0.05, 0.05, 0.05], 0.0),
-        (MatrixKind::Stiffness, [1.0, 1.3, 0.8], -0.1),
-    ] {
-        model
-            .set_matrix(kind, &MatrixView::dense(3, &diagonal(values, coupling)))
-            .unwrap();
-    }
-    model.add_contact(contact).unwrap();
-    for (dof, force) in [
-        (0, Complex64::new(0.4, 0.0)),
-        (1, Complex64::new(0.0, 0.3)),
-        (2, Complex64::new(0.2, 0.1)),
-    ] {
-        model.add_force(dof, 1, force).unwrap();
-    }
-    model
+    dense(
+        &diagonal(&[1.0; 3]),
+        &[1.0, -0.1, -0.1, -0.1, 1.3, -0.1, -0.1, -0.1, 0.8],
+    )
+    .damping(&diagonal(&[0.05; 3]))
+    .contact(contact)
+    .force(0, 1, 0.4)
+    .force(1, 1, Complex64::new(0.0, 0.3))
+    .force(2, 1, Complex64::new(0.2, 0.1))
+    .build()
 }
 
 /// The check of the first point, and the true error of the contact force at its motion.
 fn check(contact: &Contact, samples: usize, truth: usize) -> (f64, f64) {
     let model = model(contact);
     let solver = SolverOptions {
-        harmonics: HARMONICS,
         samples,
         keep_even_harmonics: true,
-        tolerance: 0.0,
-        ..SolverOptions::default()
+        ..harmonics(HARMONICS)
     };
     let branch = solve_at(&model, &solver, OMEGA);
     let x = all_harmonics(&branch, 0);

@@ -1,32 +1,19 @@
 //! The unilateral spring against quadrature, closed forms and the reference values of an oscillator
 //! with a stop: the law, static preload, coexisting solutions.
 
-use crate::common::{all_harmonics, harmonics, solve_at};
+use crate::common::models::oscillator;
+use crate::common::{all_harmonics, amplitude_range, harmonics, omega_range, solve_at};
 use hbvib::{
-    Branch, Constant, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, ModeOptions, Model, Status,
-    contact_evaluate, forced_response, nonlinear_mode,
+    Branch, Constant, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Status, contact_evaluate,
+    forced_response, nonlinear_mode,
 };
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// m ẍ + c ẋ + k x with m = k = 1, c = 0.02, and a stop kn·max(x − gap, 0).
 fn stopped(kn: f64, gap: f64, force: f64) -> Model {
-    let mut model = oscillator(force);
+    let mut model = oscillator(1.0, 1.0).damping(&[0.02]).force(0, 1, force).build();
     model.add_contact(&Contact::unilateral(None, Some(0), kn, gap)).unwrap();
-    model
-}
-
-/// The same without its stop.
-fn oscillator(force: f64) -> Model {
-    let mut model = Model::new(1).unwrap();
-    for (kind, value) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Damping, 0.02),
-        (MatrixKind::Stiffness, 1.0),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
-    }
-    model.add_force(0, 1, force.into()).unwrap();
     model
 }
 
@@ -81,7 +68,7 @@ fn a_stop_that_never_opens_is_a_spring_about_the_static_position() {
         );
     }
     // The same by a preload: gap = −preload/kn.
-    let mut other = oscillator(0.2);
+    let mut other = oscillator(1.0, 1.0).damping(&[0.02]).force(0, 1, 0.2).build();
     other
         .add_contact(
             &Contact::unilateral(None, Some(0), 1000.0, 0.0)
@@ -106,10 +93,8 @@ fn a_gap_that_never_closes_is_not_felt() {
 
 fn sweep(model: &Model, h: usize, from: f64, to: f64, at: &[f64]) -> Branch {
     let range = ForcedOptions {
-        omega_start: from,
-        omega_stop: to,
         at,
-        ..ForcedOptions::default()
+        ..omega_range(from, to)
     };
     let branch = forced_response(model, &harmonics(h), &range, &mut Hooks::default()).unwrap();
     assert_eq!(branch.status(), Status::Ok);
@@ -147,11 +132,7 @@ fn the_mode_of_a_mass_with_a_stop_has_the_period_of_its_two_springs() {
     model
         .set_matrix(MatrixKind::Damping, &MatrixView::dense(1, &[0.0]))
         .unwrap();
-    let range = ModeOptions {
-        log10_start: -2.0,
-        log10_stop: 1.0,
-        ..ModeOptions::default()
-    };
+    let range = amplitude_range(-2.0, 1.0);
     let branch = nonlinear_mode(&model, &harmonics(63), &range, &mut Hooks::default()).unwrap();
     assert_eq!(branch.status(), Status::Ok);
     let mut slipped = 0;

@@ -1,6 +1,6 @@
 //! The error estimate of solved points against the true error: effectivity = estimate over truth.
 
-use crate::common::{self, B2, Blisk, D, NDOF, R, all_harmonics, harmonics, slip, solve_at};
+use crate::common::{self, B2, Blisk, D, NDOF, R, all_harmonics, at_dof, harmonics, slip, solve_at};
 use hbvib::{Branch, ContactState, Estimate, SolverOptions, estimate_at};
 use num_complex::Complex64;
 use std::time::Instant;
@@ -34,10 +34,7 @@ fn case(k: usize) -> (Blisk, f64) {
 }
 
 fn options(highest: usize) -> SolverOptions {
-    SolverOptions {
-        response_dof: Some(B2),
-        ..harmonics(highest)
-    }
+    at_dof(B2, harmonics(highest))
 }
 
 /// Relative motion of the contact in all harmonics.

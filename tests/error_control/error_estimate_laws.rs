@@ -2,10 +2,14 @@
 //! more harmonics, against the motion in time, and against zero where nothing is missing.
 
 use crate::common::laws;
-use crate::common::{self, B2, BASE, all_harmonics, harmonics, largest, one_mass, relative_gap, slip, solve_at, sweep};
+use crate::common::models::{dense, diagonal};
+use crate::common::{
+    self, B2, BASE, all_harmonics, at_dof, harmonics, largest, omega_range, one_mass, relative_gap, slip, solve_at,
+    sweep,
+};
 use hbvib::{
-    Branch, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, Spring, TimeOptions,
-    estimate_at, forced_response, time_response,
+    Branch, Contact, ForcedOptions, Hooks, Model, SolverOptions, Spring, TimeOptions, estimate_at, forced_response,
+    time_response,
 };
 use num_complex::Complex64;
 
@@ -15,10 +19,8 @@ fn truth_from(model: &Model, branch: &Branch, truth: &SolverOptions) -> Branch {
     let mut guess = all_harmonics(branch, 0);
     guess.resize((truth.harmonics + 1) * model.ndof(), Complex64::ZERO);
     let range = ForcedOptions {
-        omega_start: omega,
-        omega_stop: omega,
         guess: Some(&guess),
-        ..ForcedOptions::default()
+        ..omega_range(omega, omega)
     };
     forced_response(model, truth, &range, &mut Hooks::default()).unwrap()
 }
@@ -139,39 +141,27 @@ fn effectivities_on_small_systems_are_told() {
 
 /// A chain of masses of which every other rubs on the ground.
 fn chain(masses: usize, contacts: usize, force: f64) -> Model {
-    let mut mass = vec![0.0; masses * masses];
-    for i in 0..masses {
-        mass[i * masses + i] = 1.0;
-    }
-    let mut model = Model::new(masses).unwrap();
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(masses, &mass))
-        .unwrap();
-    model
-        .set_matrix(
-            MatrixKind::Stiffness,
-            &MatrixView::dense(masses, &vec![0.0; masses * masses]),
+    let spring = |i: usize| Spring {
+        dof_a: Some(i),
+        dof_b: i.checked_sub(1),
+        sector_offset: 0,
+        stiffness: 4.0,
+    };
+    let slider = |c: usize| {
+        Contact::jenkins(
+            masses - 1 - c * (masses / contacts),
+            None,
+            1.0,
+            0.3,
+            0.2 + 0.1 * c as f64,
         )
-        .unwrap();
-    for i in 0..masses {
-        let before = (i > 0).then(|| i - 1);
-        let spring = Spring {
-            dof_a: Some(i),
-            dof_b: before,
-            sector_offset: 0,
-            stiffness: 4.0,
-        };
-        model.add_spring(&spring).unwrap();
-    }
-    model.set_rayleigh(0.01, 0.002).unwrap();
-    for c in 0..contacts {
-        let at = masses - 1 - c * (masses / contacts);
-        model
-            .add_contact(&Contact::jenkins(at, None, 1.0, 0.3, 0.2 + 0.1 * c as f64))
-            .unwrap();
-    }
-    model.add_force(masses - 1, 1, force.into()).unwrap();
-    model
+    };
+    dense(&diagonal(&vec![1.0; masses]), &vec![0.0; masses * masses])
+        .springs((0..masses).map(spring))
+        .rayleigh(0.01, 0.002)
+        .contacts((0..contacts).map(slider))
+        .force(masses - 1, 1, force)
+        .build()
 }
 
 #[test]
@@ -201,10 +191,7 @@ fn what_samples_miss_is_part_of_the_estimate() {
     let model = BASE.sector();
     for omega in [1312.0, 1313.0] {
         for (highest, samples) in [(9, 32), (9, 256), (21, 256), (31, 1024)] {
-            let solver = SolverOptions {
-                response_dof: Some(B2),
-                ..with(SolverOptions::default(), highest, samples)
-            };
+            let solver = at_dof(B2, with(SolverOptions::default(), highest, samples));
             let (estimate, error, _) = compare(&model, &solver, &with(solver, 511, 0), omega);
             let ratio = estimate / error;
             println!("H = {highest}, N = {samples}: {estimate:.2e} for {error:.2e}, {ratio:.2}");
@@ -249,10 +236,7 @@ fn what_misses_nothing_has_no_error() {
 fn the_corrected_solution_is_nearer_to_the_motion_in_time() {
     let model = BASE.sector();
     for (highest, omega) in [(3, 1312.0), (9, 1313.0), (31, 1311.5)] {
-        let solver = SolverOptions {
-            response_dof: Some(B2),
-            ..harmonics(highest)
-        };
+        let solver = at_dof(B2, harmonics(highest));
         let branch = solve_at(&model, &solver, omega);
         let options = TimeOptions {
             omega,
@@ -279,10 +263,7 @@ fn the_corrected_solution_is_nearer_to_the_motion_in_time() {
 #[test]
 fn every_point_of_a_response_has_its_error_when_it_is_asked_for() {
     let model = BASE.sector();
-    let plain = SolverOptions {
-        response_dof: Some(B2),
-        ..harmonics(7)
-    };
+    let plain = at_dof(B2, harmonics(7));
     let asked = SolverOptions {
         estimate_error: true,
         ..plain

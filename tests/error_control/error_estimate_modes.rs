@@ -1,7 +1,7 @@
 //! The error estimate of nonlinear modes against the true errors of frequency and damping ratio.
 
 use crate::common::mode_cases::{damped, follow};
-use crate::common::{BASE, BETA, Blisk, harmonics};
+use crate::common::{BASE, BETA, Blisk, amplitude_range, harmonics};
 use hbvib::{Branch, DampingForm, ModeOptions, Model, SolverOptions, Special, estimate_at};
 use std::fmt::Write as _;
 use std::time::Instant;
@@ -14,11 +14,9 @@ const HARMONICS: [usize; 5] = [5, 7, 9, 15, 31];
 /// Follows the first mode from the onset of slip on, with solutions at amplitudes beyond it.
 fn backbone(model: &Model, solver: &SolverOptions, form: DampingForm, count: usize) -> Branch {
     let range = |start: f64, at| ModeOptions {
-        log10_start: start,
-        log10_stop: start + 2.1,
         damping_form: form,
         at,
-        ..ModeOptions::default()
+        ..amplitude_range(start, start + 2.1)
     };
     let short = follow(model, &harmonics(1), &range(-7.0, &[]));
     let onset = short.mode().unwrap().linear_up_to;
@@ -160,11 +158,7 @@ fn every_point_of_a_mode_has_its_errors_when_they_are_asked_for_and_stuck_points
         estimate_error: true,
         ..harmonics(5)
     };
-    let range = ModeOptions {
-        log10_start: -4.0,
-        log10_stop: -2.5,
-        ..ModeOptions::default()
-    };
+    let range = amplitude_range(-4.0, -2.5);
     let branch = follow(&model, &solver, &range);
     let onset = branch.mode().unwrap().linear_up_to;
     let mut slipping = 0;
@@ -188,10 +182,8 @@ fn the_estimate_is_made_on_the_wave_of_the_branch() {
         let model = damped(&blisk, BETA);
         let range = ModeOptions {
             diameter,
-            log10_start: -3.3,
-            log10_stop: -2.5,
             at: &[-3.0],
-            ..ModeOptions::default()
+            ..amplitude_range(-3.3, -2.5)
         };
         let branch = follow(&model, &harmonics(7), &range);
         let point = branch.at(0)[0].point;

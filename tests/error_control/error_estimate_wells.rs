@@ -2,10 +2,10 @@
 //! force is the same wherever its negative stiffness stands, in the structure or in the law, so that a stable structure with the
 //! rest of it in the law has the truth.
 
-use crate::common::{all_harmonics, harmonics};
+use crate::common::models::oscillator;
+use crate::common::{all_harmonics, harmonics, omega_range};
 use hbvib::{
-    Branch, Contact, ContactKind, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Polynomial, SolverOptions,
-    Status, forced_response,
+    Branch, Contact, ContactKind, ForcedOptions, Hooks, Model, Polynomial, SolverOptions, Status, forced_response,
 };
 use num_complex::Complex64;
 
@@ -13,22 +13,17 @@ const OMEGA: f64 = 0.8;
 
 /// x'' + 0.2 x' − x + x³ = 0.1 cos ωt + mean, with the stiffness k of the structure and −1 − k of the law.
 fn well(k: f64, mean: f64) -> Model {
-    let mut model = Model::new(1).unwrap();
-    for (kind, value) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Damping, 0.2),
-        (MatrixKind::Stiffness, k),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
-    }
     let law = if k <= -1.0 {
         Contact::cubic(0, None, 0.0, 1.0)
     } else {
         let law = Polynomial::scalar(&[-1.0 - k, 0.0, 1.0], &[]).unwrap();
         Contact::between(0, None, ContactKind::Polynomial(law))
     };
-    model.add_contact(&law).unwrap();
-    model.add_force(0, 1, 0.1.into()).unwrap();
+    let mut model = oscillator(1.0, k)
+        .damping(&[0.2])
+        .contact(&law)
+        .force(0, 1, 0.1)
+        .build();
     if mean != 0.0 {
         model.add_force(0, 0, mean.into()).unwrap();
     }
@@ -39,13 +34,8 @@ fn well(k: f64, mean: f64) -> Model {
 fn solve(model: &Model, options: &SolverOptions, side: f64, until: f64) -> Branch {
     let guess = [side, 0.05].map(Complex64::from);
     let range = ForcedOptions {
-        omega_start: OMEGA,
-        omega_stop: until,
-        at: &[],
         guess: Some(&guess),
-        responses: &[],
-        together: false,
-        ..ForcedOptions::default()
+        ..omega_range(OMEGA, until)
     };
     forced_response(model, options, &range, &mut Hooks::default()).unwrap()
 }

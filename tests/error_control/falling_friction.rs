@@ -1,7 +1,8 @@
 //! The error told with a law of the caller whose friction falls with the velocity, against many harmonics.
 
-use crate::common::{harmonics, relative_gap, solve_at};
-use hbvib::{Call, Contact, ContactKind, MatrixKind, MatrixView, Model, SolverOptions, User, UserForce};
+use crate::common::models::chain;
+use crate::common::{at_dof, harmonics, relative_gap, solve_at};
+use hbvib::{Call, Contact, ContactKind, Model, SolverOptions, User, UserForce};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -63,25 +64,15 @@ fn cases() -> [Case; 2] {
 }
 
 fn model(case: Case) -> Model {
-    let [k1, k2, k3] = case.springs;
-    let mut model = Model::new(2).unwrap();
-    let matrices = [
-        (MatrixKind::Mass, [case.mass[0], 0.0, 0.0, case.mass[1]]),
-        (MatrixKind::Stiffness, [k1 + k2, -k2, -k2, k2 + k3]),
-    ];
-    for (kind, values) in matrices {
-        model.set_matrix(kind, &MatrixView::dense(2, &values)).unwrap();
-    }
-    model.set_rayleigh(0.0, case.beta).unwrap();
-    model.add_force(1, 1, Complex64::ONE).unwrap();
     let law = User {
         odd: true,
         ..User::new(Arc::new(case.law), 1, 0).unwrap()
     };
-    model
-        .add_contact(&Contact::over(vec![1], ContactKind::User(law)))
-        .unwrap();
-    model
+    chain(&case.mass, &case.springs)
+        .rayleigh(0.0, case.beta)
+        .force(1, 1, Complex64::ONE)
+        .contact(Contact::over(vec![1], ContactKind::User(law)))
+        .build()
 }
 
 #[test]
@@ -90,10 +81,7 @@ fn errors_told_where_friction_falls_with_the_velocity_are_the_true_ones() {
         let omega = case.omega;
         let model = model(case);
         let solve = |solver: SolverOptions| {
-            let solver = SolverOptions {
-                response_dof: Some(1),
-                ..solver
-            };
+            let solver = at_dof(1, solver);
             solve_at(&model, &solver, omega)
         };
         let first = |branch: &hbvib::Branch| branch.response_at(0).unwrap()[0];

@@ -1,8 +1,9 @@
 //! The error told at the first harmonics, where what the third one changes vanishes by chance, and of friction that is regularised over
 //! a small velocity, against many harmonics.
 
-use crate::common::{harmonics, relative_gap, solve_at};
-use hbvib::{Contact, MatrixKind, MatrixView, Model, SolverOptions};
+use crate::common::models::chain;
+use crate::common::{at_dof, harmonics, relative_gap, solve_at};
+use hbvib::{Contact, Model, SolverOptions};
 use num_complex::Complex64;
 
 /// Two masses in a row on the ground, with stiffness damping.
@@ -60,18 +61,11 @@ fn cases() -> [Case; 4] {
 
 fn model(case: &Case) -> Model {
     let [k1, k2] = case.springs;
-    let mut model = Model::new(2).unwrap();
-    let matrices = [
-        (MatrixKind::Mass, [case.mass[0], 0.0, 0.0, case.mass[1]]),
-        (MatrixKind::Stiffness, [k1 + k2, -k2, -k2, k2]),
-    ];
-    for (kind, values) in matrices {
-        model.set_matrix(kind, &MatrixView::dense(2, &values)).unwrap();
-    }
-    model.set_rayleigh(0.0, case.beta).unwrap();
-    model.add_force(case.force, 1, Complex64::ONE).unwrap();
-    model.add_contact(&case.contact).unwrap();
-    model
+    chain(&case.mass, &[k1, k2, 0.0])
+        .rayleigh(0.0, case.beta)
+        .force(case.force, 1, Complex64::ONE)
+        .contact(&case.contact)
+        .build()
 }
 
 #[test]
@@ -79,10 +73,7 @@ fn errors_told_at_few_harmonics_are_the_true_ones_within_a_factor_of_two() {
     for (number, case) in cases().iter().enumerate() {
         let model = model(case);
         let solve = |solver: SolverOptions| {
-            let solver = SolverOptions {
-                response_dof: Some(case.force),
-                ..solver
-            };
+            let solver = at_dof(case.force, solver);
             solve_at(&model, &solver, case.omega)
         };
         let first = |branch: &hbvib::Branch| branch.response_at(0).unwrap()[0];

@@ -2,12 +2,14 @@
 
 use crate::common::depth::{some_of, thorough};
 use crate::common::mode_cases as modes;
+use crate::common::models::{self, free_end};
 use crate::common::{
-    self, B2, BASE, Blisk, all_harmonics, data, harmonics, one_mass, relative_gap, slip, solve_at, sweep,
+    self, B2, BASE, Blisk, all_harmonics, amplitude_range, at_dof, data, harmonics, omega_range, one_mass,
+    relative_gap, slip, solve_at, sweep,
 };
 use hbvib::{
-    Branch, Contact, ContactState, ForcedOptions, Hooks, MatrixKind, MatrixView, ModeOptions, Model, SolverOptions,
-    Status, SynthesisOptions, forced_response, synthesise,
+    Branch, Contact, ContactState, ForcedOptions, Hooks, ModeOptions, Model, SolverOptions, Status, SynthesisOptions,
+    forced_response, synthesise,
 };
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -26,18 +28,10 @@ fn truth_of(model: &Model, branch: &Branch, point: usize, highest: usize) -> Bra
     let mut guess = all_harmonics(branch, point);
     guess.resize((highest + 1) * model.ndof(), Complex64::ZERO);
     let range = ForcedOptions {
-        omega_start: omega,
-        omega_stop: omega,
-        at: &[],
         guess: Some(&guess),
-        responses: &[],
-        together: false,
-        ..ForcedOptions::default()
+        ..omega_range(omega, omega)
     };
-    let solver = SolverOptions {
-        response_dof: Some(branch.response_dof()),
-        ..harmonics(highest)
-    };
+    let solver = at_dof(branch.response_dof(), harmonics(highest));
     forced_response(model, &solver, &range, &mut Hooks::default()).unwrap()
 }
 
@@ -376,11 +370,7 @@ fn max_harmonics_below_the_forcing_is_refused() {
         max_harmonics: 5,
         ..within(1e-3)
     };
-    let range = ForcedOptions {
-        omega_start: 1300.0,
-        omega_stop: 1310.0,
-        ..ForcedOptions::default()
-    };
+    let range = omega_range(1300.0, 1310.0);
     let e = forced_response(&model, &solver, &range, &mut Hooks::default()).unwrap_err();
     assert_eq!(e.status, Status::Argument);
     let text = e.to_string();
@@ -397,13 +387,8 @@ fn a_guess_starts_a_response_with_a_tolerance() {
     let first = solve_at(&model, &within(1e-3), 1312.0);
     let guess = all_harmonics(&first, 0);
     let range = ForcedOptions {
-        omega_start: 1312.0,
-        omega_stop: 1312.0,
-        at: &[],
         guess: Some(&guess),
-        responses: &[],
-        together: false,
-        ..ForcedOptions::default()
+        ..omega_range(1312.0, 1312.0)
     };
     let solver = SolverOptions {
         harmonics: first.harmonics(),
@@ -418,29 +403,11 @@ fn a_guess_starts_a_response_with_a_tolerance() {
 /// A chain of 40 masses with ten friction contacts to the ground, near its first resonance.
 fn chain() -> (Model, (f64, f64)) {
     let n = 40;
-    let mut model = Model::new(n).unwrap();
-    let mut stiffness = vec![0.0; n * n];
-    for i in 0..n {
-        stiffness[i * n + i] = if i + 1 < n { 2.0 } else { 1.0 };
-        if i > 0 {
-            stiffness[i * n + i - 1] = -1.0;
-            stiffness[(i - 1) * n + i] = -1.0;
-        }
-    }
-    let mass: Vec<f64> = (0..n * n).map(|i| f64::from(u8::from(i % (n + 1) == 0))).collect();
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &mass))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &stiffness))
-        .unwrap();
-    model.set_rayleigh(0.0, 0.05).unwrap();
-    for i in 0..10 {
-        model
-            .add_contact(&Contact::jenkins(4 * i + 3, None, 0.05, 0.5, 0.4))
-            .unwrap();
-    }
-    model.add_force(n - 1, 1, 0.2.into()).unwrap();
+    let model = models::chain(&vec![1.0; n], &free_end(n, 1.0))
+        .rayleigh(0.0, 0.05)
+        .contacts((0..10).map(|i| Contact::jenkins(4 * i + 3, None, 0.05, 0.5, 0.4)))
+        .force(n - 1, 1, 0.2)
+        .build();
     let first = model.linear_modes(0, ContactState::Stuck).unwrap().omega[0];
     (model, (0.8 * first, 1.1 * first))
 }
@@ -450,10 +417,7 @@ fn every_point_with_ten_contacts_is_within_the_tolerance() {
     let (model, range) = chain();
     for tolerance in [1e-2, 1e-3] {
         let mut account = Account::default();
-        let solver = SolverOptions {
-            response_dof: Some(39),
-            ..within(tolerance)
-        };
+        let solver = at_dof(39, within(tolerance));
         let branch = account.add_with(&model, &solver, range, (8, 63));
         account.check(&format!(
             "ten contacts, {tolerance:.0e}, H up to {}",
@@ -479,10 +443,8 @@ fn nonlinear_modes_are_within_the_tolerance() {
     let onset = onset.mode().unwrap().linear_up_to;
     let at: Vec<f64> = (0..12).map(|i| onset + 0.05 + 0.17 * f64::from(i)).collect();
     let range = ModeOptions {
-        log10_start: onset - 0.5,
-        log10_stop: onset + 2.1,
         at: &at,
-        ..ModeOptions::default()
+        ..amplitude_range(onset - 0.5, onset + 2.1)
     };
     let truth = modes::follow(&model, &harmonics(255), &range);
     let largest = modes::damping(&truth).iter().fold(0.0_f64, |m, d| m.max(*d));
@@ -519,11 +481,7 @@ fn nonlinear_modes_are_within_the_tolerance() {
 #[test]
 fn a_mode_with_a_tolerance_gives_the_resonances_of_the_response() {
     let model = BASE.sector();
-    let range = ModeOptions {
-        log10_start: -6.5,
-        log10_stop: -2.0,
-        ..ModeOptions::default()
-    };
+    let range = amplitude_range(-6.5, -2.0);
     let peak = |solver: &SolverOptions| {
         let branch = modes::follow(&model, solver, &range);
         let made = synthesise(&branch, &model, &SynthesisOptions::default()).unwrap();

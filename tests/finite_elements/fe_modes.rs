@@ -1,11 +1,11 @@
 //! The nonlinear mode of a finite-element sector with 60 friction contacts, whose onsets of slip lie
 //! four decades apart.
 
+use crate::common::{amplitude_range, at_dof, harmonics};
 use crate::response::{Range, Response};
 use crate::sector::{Sector, Size};
 use hbvib::{
-    Branch, Hooks, ModeChoice, ModeField, ModeOptions, Model, SolverOptions, Status, SynthesisOptions, nonlinear_mode,
-    synthesise,
+    Branch, Hooks, ModeChoice, ModeField, ModeOptions, Model, Status, SynthesisOptions, nonlinear_mode, synthesise,
 };
 use std::f64::consts::TAU;
 
@@ -20,17 +20,10 @@ fn mode(model: &Model, tip: usize) -> Branch {
 }
 
 fn mode_between((from, to): (f64, f64), harmonics: usize, model: &Model, tip: usize) -> Branch {
-    let solver = SolverOptions {
-        harmonics,
-        response_dof: Some(tip),
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    };
+    let solver = at_dof(tip, crate::common::harmonics(harmonics));
     let range = ModeOptions {
         choice: ModeChoice::Near(530.0 * TAU),
-        log10_start: from,
-        log10_stop: to,
-        ..ModeOptions::default()
+        ..amplitude_range(from, to)
     };
     let branch = nonlinear_mode(model, &solver, &range, &mut Hooks::default()).unwrap();
     assert_eq!(branch.status(), Status::Ok);
@@ -88,11 +81,7 @@ fn sixty_contacts_are_followed_from_stuck_to_sliding_and_balance_their_work() {
         to: peak.at.omega / TAU + 3.0,
         at: Vec::new(),
     };
-    let solver = SolverOptions {
-        harmonics: 1,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    };
+    let solver = harmonics(1);
     let computed = Response::follow(&model, &solver, &range, &[tip], |_| {}).unwrap().peak;
     let error = peak.at.response.norm() / computed.amplitude() - 1.0;
     println!("synthesised peak {error:e}");

@@ -1,7 +1,7 @@
 //! The nonlinear mode of a finite-element sector whose 30 pairs of nodes press with a normal load that varies and may
 //! vanish, about its static state: one harmonic and the mean, from stuck contacts to the first that lift off.
 
-use crate::common::{all_harmonics, harmonics, processor_time, relative_gap};
+use crate::common::{all_harmonics, amplitude_range, at_dof, harmonics, omega_range, processor_time, relative_gap};
 use crate::sector::{Interface, Sector, Size};
 use hbvib::{
     Branch, Constant, Contact, Error, ForcedOptions, Hooks, MatrixKind, ModeChoice, ModeField, ModeOptions, Model,
@@ -67,15 +67,10 @@ fn hold(model: &mut Model, sector: &Sector, stiffness: f64) {
 }
 
 fn followed(model: &Model, tip: usize, log10_stop: f64) -> Result<Branch, Error> {
-    let solver = SolverOptions {
-        response_dof: Some(tip),
-        ..harmonics(1)
-    };
+    let solver = at_dof(tip, harmonics(1));
     let range = ModeOptions {
         choice: ModeChoice::Near(530.0 * TAU),
-        log10_start: -7.0,
-        log10_stop,
-        ..ModeOptions::default()
+        ..amplitude_range(-7.0, log10_stop)
     };
     nonlinear_mode(model, &solver, &range, &mut Hooks::default())
 }
@@ -161,9 +156,7 @@ fn mode(model: &Model, tip: usize, harmonic: usize) -> Branch {
     };
     let range = ModeOptions {
         choice: ModeChoice::Near(530.0 * TAU),
-        log10_start: -7.0,
-        log10_stop: -5.0,
-        ..ModeOptions::default()
+        ..amplitude_range(-7.0, -5.0)
     };
     nonlinear_mode(model, &solver, &range, &mut Hooks::default()).unwrap()
 }
@@ -236,13 +229,8 @@ fn balanced(model: &Model, solver: &SolverOptions, branch: &Branch, (omega, poin
             .unwrap();
     }
     let range = ForcedOptions {
-        omega_start: omega,
-        omega_stop: omega,
-        at: &[],
         guess: Some(&guess),
-        responses: &[],
-        together: false,
-        ..ForcedOptions::default()
+        ..omega_range(omega, omega)
     };
     let answer = forced_response(&forced, solver, &range, &mut Hooks::default()).unwrap();
     assert_eq!(answer.status(), Status::Ok);
@@ -263,10 +251,8 @@ fn pressed_contacts_of_a_sector_stick_and_then_slip_as_the_forced_response_does(
     };
     let range = ModeOptions {
         choice: ModeChoice::Near(530.0 * TAU),
-        log10_start: -6.5,
-        log10_stop: -6.35,
         at: &[-6.5, -6.35],
-        ..ModeOptions::default()
+        ..amplitude_range(-6.5, -6.35)
     };
     let branch = nonlinear_mode(&model, &solver, &range, &mut Hooks::default()).unwrap();
     assert_eq!(branch.status(), Status::Ok);

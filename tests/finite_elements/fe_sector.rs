@@ -87,11 +87,7 @@ fn natural_frequencies_of_the_full_sector_agree() {
 }
 
 fn options(harmonics: usize) -> SolverOptions {
-    SolverOptions {
-        harmonics,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    }
+    crate::common::harmonics(harmonics)
 }
 
 fn follow(sector: &Sector, force: f64, harmonics: usize, range: &Range) -> Response {

@@ -2,37 +2,25 @@
 
 use crate::beam::{Beam, Z};
 use crate::common::stopping::{Analysis, Lateness, of_branch, of_call};
+use crate::common::{amplitude_range, at_dof, harmonics, omega_range};
 use crate::sector::{ENGINE_ORDER, Sector, Size};
-use hbvib::{
-    ContactState, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, SolverOptions, forced_response, nonlinear_mode,
-};
+use hbvib::{ContactState, Hooks, ModeChoice, ModeOptions, Model, SolverOptions, forced_response, nonlinear_mode};
 
 /// The analyses of a model around its first resonance in a pattern of some nodal diameters.
 fn analyses(model: &Model, response: usize, diameter: i64) -> Vec<Analysis<'_>> {
     let first = model.lowest_modes(diameter, ContactState::Stuck, 1).unwrap().omega[0];
-    let fixed = SolverOptions {
-        harmonics: 3,
-        tolerance: 0.0,
-        response_dof: Some(response),
-        ..SolverOptions::default()
-    };
+    let fixed = at_dof(response, harmonics(3));
     let automatic = SolverOptions {
         tolerance: 1e-2,
         ..fixed
     };
-    let range = ForcedOptions {
-        omega_start: 0.97 * first,
-        omega_stop: 1.03 * first,
-        ..ForcedOptions::default()
-    };
+    let range = omega_range(0.97 * first, 1.03 * first);
     let forced = move |solver: SolverOptions| {
         move |hooks: &mut Hooks<'_>| of_branch(forced_response(model, &solver, &range, hooks))
     };
     let shape = ModeOptions {
         choice: ModeChoice::Index(0),
-        log10_start: -6.0,
-        log10_stop: -2.0,
-        ..ModeOptions::default()
+        ..amplitude_range(-6.0, -2.0)
     };
     let mut all: Vec<Analysis<'_>> = vec![
         ("forced, fixed H", Box::new(forced(fixed))),

@@ -3,11 +3,12 @@
 
 use crate::beam::{Beam, STEEL, Y, Z};
 use crate::brick;
+use crate::common::{at_dof, harmonics, omega_range};
 use hbvib::internals::HarmonicBalance;
 use hbvib::internals::Jacobian;
 use hbvib::internals::{Condensed, Reference};
 use hbvib::internals::{InitialGuess, Problem, Residual};
-use hbvib::{Branch, ContactState, ForcedOptions, Hooks, Interrupt, Model, SolverOptions, forced_response};
+use hbvib::{Branch, ContactState, Hooks, Interrupt, Model, forced_response};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -23,17 +24,8 @@ fn small() -> Beam {
 }
 
 fn follow(beam: &Beam, model: &Model, harmonics: usize, from: f64, to: f64) -> Branch {
-    let solver = SolverOptions {
-        harmonics,
-        response_dof: Some(beam.tips()[0] + Z),
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    };
-    let range = ForcedOptions {
-        omega_start: TAU * from,
-        omega_stop: TAU * to,
-        ..ForcedOptions::default()
-    };
+    let solver = at_dof(beam.tips()[0] + Z, crate::common::harmonics(harmonics));
+    let range = omega_range(TAU * from, TAU * to);
     forced_response(model, &solver, &range, &mut Hooks::default()).unwrap()
 }
 
@@ -160,11 +152,7 @@ fn closed_contacts_that_stick_drop_out_and_the_jacobian_is_that_of_differences()
     let beam = small();
     let model = beam.forced(6.0, LIFT).unwrap();
     let omega = TAU * 300.0;
-    let solver = SolverOptions {
-        harmonics: 3,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    };
+    let solver = harmonics(3);
     let condensed = Condensed::new(&model, &solver, omega, &Interrupt::none()).unwrap();
     assert_eq!(condensed.reference(), Reference::Stuck);
     let interrupt = Interrupt::none();

@@ -1,7 +1,7 @@
 //! Structures of 20,000 to 90,000 degrees of freedom through the public calls: motion, work and memory of a response on a basis
 //! against factors.
 
-use crate::common::{all_harmonics, processor_time, sweep};
+use crate::common::{all_harmonics, at_dof, harmonics, processor_time, sweep};
 use crate::plate::Plate;
 use hbvib::internals::{Definite, entries_of_factor};
 use hbvib::{
@@ -109,11 +109,9 @@ fn image_by_factors(elements: [usize; 3], (x, harmonics): (&[Complex64], usize),
             model.add_force(driven(&plate), 1, Complex64::ONE).unwrap();
         }
         let solver = SolverOptions {
-            tolerance: 0.0,
-            harmonics: 1,
             response_dof: Some(plate.corner()),
             flexibility: Flexibility::Direct,
-            ..SolverOptions::default()
+            ..crate::common::harmonics(1)
         };
         let at = h as f64 * omega;
         let linear = all_harmonics(&sweep(&model, &solver, at, at, &[]), 0);
@@ -151,11 +149,9 @@ fn agrees_with_direct_factors(elements: [usize; 3], (setup, beside): (f64, f64),
         let factors = seconds() - begin;
         drop(waves);
         let solver = |flexibility| SolverOptions {
-            tolerance: 0.0,
-            harmonics,
             response_dof: Some(plate.corner()),
             flexibility,
-            ..SolverOptions::default()
+            ..crate::common::harmonics(harmonics)
         };
         let reduced = solver(Flexibility::Automatic);
         forget_the_peak();
@@ -247,12 +243,7 @@ fn plate_is_swept(elements: [usize; 3]) {
     let model = plate.with_sliders(20, 2e5, 0.05).unwrap();
     // Without the matrices that the caller held until the model had its own.
     forget_the_peak();
-    let solver = SolverOptions {
-        tolerance: 0.0,
-        harmonics: 3,
-        response_dof: Some(plate.corner()),
-        ..SolverOptions::default()
-    };
+    let solver = at_dof(plate.corner(), harmonics(3));
     // The first natural frequency of either plate is 16.6 Hz.
     let omega = TAU * 16.6;
     let branch = sweep(&model, &solver, 0.8 * omega, 1.2 * omega, &[]);

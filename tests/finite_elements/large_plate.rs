@@ -1,7 +1,7 @@
 //! A plate of 3,060 degrees of freedom on a basis: points by factors, a sweep with a tolerance, and how little is computed.
 
 use crate::common::depth::some_of;
-use crate::common::{all_harmonics, sweep};
+use crate::common::{all_harmonics, harmonics, sweep};
 use crate::plate::Plate;
 use hbvib::{ContactState, Flexibility, Model, SolverOptions};
 use num_complex::Complex64;
@@ -22,11 +22,9 @@ fn of_thickness(thickness: f64) -> (Plate, Model, f64) {
 
 fn options(plate: &Plate, flexibility: Flexibility) -> SolverOptions {
     SolverOptions {
-        tolerance: 0.0,
-        harmonics: 3,
         response_dof: Some(plate.corner()),
         flexibility,
-        ..SolverOptions::default()
+        ..harmonics(3)
     }
 }
 

@@ -1,7 +1,8 @@
 //! Stability of the finite-element sector with its 60 contacts, on modes and sliders.
 
+use crate::common::harmonics;
 use crate::sector::{Sector, Size};
-use hbvib::{Floquet, FloquetOptions, Hooks, SolverOptions, Waves, floquet};
+use hbvib::{Floquet, FloquetOptions, Hooks, Waves, floquet};
 use std::f64::consts::TAU;
 use std::time::Instant;
 
@@ -13,11 +14,7 @@ fn stability(size: Size, force: f64, waves: Waves) -> Floquet {
 fn stability_on(size: Size, force: f64, (waves, modes): (Waves, Option<usize>)) -> Floquet {
     let folder = crate::common::programs::root().join("examples/data/fe");
     let model = Sector::read(&folder, size).unwrap().forced(force).unwrap();
-    let solver = SolverOptions {
-        harmonics: 9,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    };
+    let solver = harmonics(9);
     let branch = crate::common::solve_at(&model, &solver, 530.0 * TAU);
     let begin = Instant::now();
     let options = FloquetOptions {

@@ -1,8 +1,8 @@
 //! Damping per nodal diameter in waves of either sense: the response of a sector whose matrices are given per diameter is
 //! that of the whole wheel, and a complex stiffness, whose backward wave is unknown, is refused there.
 
-use crate::common::{all_harmonics, harmonics, phase, relative_gap, slip, solve_at};
-use hbvib::{Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Part, Status, forced_response};
+use crate::common::{all_harmonics, harmonics, omega_range, phase, relative_gap, slip, solve_at};
+use hbvib::{Contact, Hooks, MatrixKind, MatrixView, Model, Part, Status, forced_response};
 use num_complex::Complex64;
 
 const N: usize = 2;
@@ -146,11 +146,7 @@ fn a_complex_stiffness_per_diameter_serves_forward_waves_and_is_refused_in_backw
     assert!(relative_gap(&all_harmonics(&a, 0), &all_harmonics(&b, 0)) < 1e-10);
     for (engine_order, highest) in [(-2, 1), (5, 1), (2, 5), (1, 5)] {
         let model = sector(Form::ComplexStiffness, engine_order);
-        let range = ForcedOptions {
-            omega_start: 2.0,
-            omega_stop: 2.1,
-            ..ForcedOptions::default()
-        };
+        let range = omega_range(2.0, 2.1);
         let refused = forced_response(&model, &harmonics(highest), &range, &mut Hooks::default()).unwrap_err();
         assert_eq!(refused.status, Status::Unsupported, "EO {engine_order}: {refused}");
         let sentence = refused.to_string();

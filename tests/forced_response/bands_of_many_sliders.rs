@@ -1,46 +1,26 @@
 //! Bands over many free sliders: eight contacts of a face between the blades of a wheel against one of the same stiffness, whose largest
 //! peak is one of two; friction in a plane at eight nodes against random residual states.
 
-use crate::common::{harmonics, solve_at, sweep};
-use hbvib::{
-    BandOf, BandOptions, Contact, ForcedOptions, Frame, Hooks, MatrixKind, MatrixView, Model, TimeOptions, band,
-    forced_response, freedom, time_response,
-};
+use crate::common::models::{Structure, damper_face, dense, diagonal};
+use crate::common::{harmonics, omega_range, solve_at, sweep};
+use hbvib::{BandOf, BandOptions, Contact, Hooks, Model, TimeOptions, band, forced_response, freedom, time_response};
 use num_complex::Complex64;
 use std::cell::Cell;
-use std::f64::consts::FRAC_1_SQRT_2;
-
-pub fn diagonal(model: &mut Model, which: MatrixKind, values: &[f64]) {
-    let n = values.len();
-    let mut full = vec![0.0; n * n];
-    for (i, x) in values.iter().enumerate() {
-        full[i * n + i] = *x;
-    }
-    model.set_matrix(which, &MatrixView::dense(n, &full)).unwrap();
-}
 
 /// A wedge damper between each blade and the next one; its face on the blade as a number of equal contacts.
 fn wheel(parts: usize) -> Model {
-    let mut model = Model::cyclic(3, 24).unwrap();
-    model.set_wave(3);
-    diagonal(&mut model, MatrixKind::Mass, &[1.0, 0.01, 0.01]);
-    diagonal(&mut model, MatrixKind::Damping, &[0.02, 0.004, 0.004]);
-    diagonal(&mut model, MatrixKind::Stiffness, &[1.0, 1e-3, 1e-3]);
-    let r = FRAC_1_SQRT_2;
-    let face = |side: f64, mu: f64, share: f64, sector_offset: i64| Contact {
-        dof_a: [Some(1), Some(2), None],
-        dof_b: [Some(0), None, None],
-        frame: Some(Frame::new([side * r, -r, 0.0], Some([side * r, r, 0.0])).unwrap()),
-        sector_offset,
-        ..Contact::friction_2d([None; 2], [None; 2], (share, 1.5 * share), mu, 0.0)
-    };
-    for _ in 0..parts {
-        model.add_contact(&face(1.0, 0.6, 1.0 / parts as f64, 0)).unwrap();
-    }
-    model.add_contact(&face(-1.0, 0.15, 1.0, 1)).unwrap();
-    model.add_force(2, 0, Complex64::new(1.0, 0.0)).unwrap();
-    model.add_force(0, 1, Complex64::new(0.05, 0.0)).unwrap();
-    model
+    let share = 1.0 / parts as f64;
+    let on_blade = damper_face([1, 2], 1.0, Some(0), [share, 1.5 * share, 0.6]);
+    let mut on_next = damper_face([1, 2], -1.0, Some(0), [1.0, 1.5, 0.15]);
+    on_next.sector_offset = 1;
+    Structure::cyclic(3, 24)
+        .wave(3)
+        .diagonals([&[1.0, 0.01, 0.01], &[0.02, 0.004, 0.004], &[1.0, 1e-3, 1e-3]])
+        .contacts(vec![on_blade; parts])
+        .contact(on_next)
+        .force(2, 0, 1.0)
+        .force(0, 1, 0.05)
+        .build()
 }
 
 #[test]
@@ -65,11 +45,7 @@ fn eight_sliders_a_sector_have_the_band_of_one() {
             cancelled: Some(&count),
             ..Hooks::default()
         };
-        let range = ForcedOptions {
-            omega_start: 1.0,
-            omega_stop: 1.2,
-            ..ForcedOptions::default()
-        };
+        let range = omega_range(1.0, 1.2);
         forced_response(&model, &solver, &range, &mut hooks).unwrap();
         let of_sweep = asked.replace(0);
         let found = band(&model, &branch, peak, &solver, &options, &mut hooks).unwrap();
@@ -127,23 +103,15 @@ pub fn node_forces(count: usize) -> Vec<(usize, Complex64)> {
 /// Nodes of unit mass that move in three directions on friction in a plane, every other one with a large limit.
 pub fn nodes(count: usize) -> Model {
     let n = 3 * count;
-    let mut model = Model::new(n).unwrap();
-    diagonal(&mut model, MatrixKind::Mass, &vec![1.0; n]);
-    diagonal(&mut model, MatrixKind::Damping, &vec![NODE_DAMPING; n]);
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &node_stiffness(count)))
-        .unwrap();
-    for node in 0..count {
-        let dofs = [3 * node, 3 * node + 1, 3 * node + 2].map(Some);
+    let contact = |node: usize| {
         let (mu, load) = node_friction(node);
-        model
-            .add_contact(&Contact::friction_3d(dofs, [None; 3], NODE_CONTACT, mu, load))
-            .unwrap();
-    }
-    for (dof, force) in node_forces(count) {
-        model.add_force(dof, 1, force).unwrap();
-    }
-    model
+        Contact::friction_3d([0, 1, 2].map(|k| Some(3 * node + k)), [None; 3], NODE_CONTACT, mu, load)
+    };
+    dense(&diagonal(&vec![1.0; n]), &node_stiffness(count))
+        .damping(&diagonal(&vec![NODE_DAMPING; n]))
+        .contacts((0..count).map(contact))
+        .forces(node_forces(count).into_iter().map(|(dof, force)| (dof, 1, force)))
+        .build()
 }
 
 #[test]
@@ -207,29 +175,21 @@ fn outside_of(count: usize, (least, trials): (usize, usize), spread: f64) {
 /// A blade with two wedge dampers: one whose contact with the platform sticks at any force, and one on a second platform that slips at
 /// the largest amplitudes and sticks at the smaller ones, where its residual force is free as well.
 fn blade_with_two_dampers(second: f64) -> Model {
-    let mut model = Model::new(5).unwrap();
-    diagonal(&mut model, MatrixKind::Mass, &[1.0, 0.01, 0.01, 0.01, 0.01]);
-    diagonal(&mut model, MatrixKind::Damping, &[0.04, 0.004, 0.004, 0.004, 0.004]);
-    diagonal(&mut model, MatrixKind::Stiffness, &[1.0, 1e-3, 1e-3, 1e-3, 1e-3]);
-    let r = FRAC_1_SQRT_2;
-    for (u, platform, blade) in [(1, 0.6, 0.2), (3, second, 0.2)] {
-        let damper = [Some(u), Some(u + 1), None];
-        for (normal, tangent, other, mu) in [
-            ([r, -r, 0.0], [r, r, 0.0], None, platform),
-            ([-r, -r, 0.0], [-r, r, 0.0], Some(0), blade),
-        ] {
-            let contact = Contact {
-                dof_a: damper,
-                dof_b: [other, None, None],
-                frame: Some(Frame::new(normal, Some(tangent)).unwrap()),
-                ..Contact::friction_2d([None; 2], [None; 2], (1.0, 1.5), mu, 0.0)
-            };
-            model.add_contact(&contact).unwrap();
-        }
-        model.add_force(u + 1, 0, Complex64::new(1.0, 0.0)).unwrap();
-    }
-    model.add_force(0, 1, Complex64::new(0.1, 0.0)).unwrap();
-    model
+    two_dampers()
+        .contact(damper_face([1, 2], 1.0, None, [1.0, 1.5, 0.6]))
+        .contact(damper_face([1, 2], -1.0, Some(0), [1.0, 1.5, 0.2]))
+        .force(2, 0, 1.0)
+        .contact(damper_face([3, 4], 1.0, None, [1.0, 1.5, second]))
+        .contact(damper_face([3, 4], -1.0, Some(0), [1.0, 1.5, 0.2]))
+        .force(4, 0, 1.0)
+        .force(0, 1, 0.1)
+        .build()
+}
+
+/// A blade and two dampers on soft supports, without contacts.
+pub fn two_dampers() -> Structure {
+    let each = |blade: f64, damper: f64| [blade, damper, damper, damper, damper];
+    Structure::plain(5).diagonals([&each(1.0, 0.01), &each(0.04, 0.004), &each(1.0, 1e-3)])
 }
 
 #[test]

@@ -1,23 +1,18 @@
 //! The band of a blade with two wedge dampers, whose contacts stick or slip from state to state: no random residual state lies outside.
 
-use crate::bands_of_many_sliders::diagonal;
-use crate::common::{harmonics, solve_at};
-use hbvib::{
-    BandOptions, Contact, ForcedOptions, Frame, Hooks, MatrixKind, MatrixView, Model, band, forced_response, freedom,
-};
+use crate::bands_of_many_sliders::two_dampers;
+use crate::common::models::{coupled, damper_face};
+use crate::common::random;
+use crate::common::{harmonics, omega_range, solve_at};
+use hbvib::{BandOptions, Contact, Frame, Hooks, Model, band, forced_response, freedom};
 use num_complex::Complex64;
-use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Numbers without pattern between 0 and 1.
 struct Numbers(u64);
 
 impl Numbers {
     fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+        random::unit(&mut self.0)
     }
 
     fn within(&mut self, low: f64, high: f64) -> f64 {
@@ -27,31 +22,16 @@ impl Numbers {
 
 /// A blade with two dampers of any friction, weight and stiffness, and a frequency.
 fn any_dampers(numbers: &mut Numbers) -> (Model, f64) {
-    let mut model = Model::new(5).unwrap();
-    diagonal(&mut model, MatrixKind::Mass, &[1.0, 0.01, 0.01, 0.01, 0.01]);
-    diagonal(&mut model, MatrixKind::Damping, &[0.04, 0.004, 0.004, 0.004, 0.004]);
-    diagonal(&mut model, MatrixKind::Stiffness, &[1.0, 1e-3, 1e-3, 1e-3, 1e-3]);
-    let r = FRAC_1_SQRT_2;
+    let mut model = two_dampers();
     for u in [1, 3] {
         let (platform, blade) = (numbers.within(0.15, 0.6), numbers.within(0.1, 0.3));
         let (kt, kn) = (numbers.within(0.5, 1.5), numbers.within(1.0, 2.0));
-        for (normal, tangent, other, mu) in [
-            ([r, -r, 0.0], [r, r, 0.0], None, platform),
-            ([-r, -r, 0.0], [-r, r, 0.0], Some(0), blade),
-        ] {
-            let contact = Contact {
-                dof_a: [Some(u), Some(u + 1), None],
-                dof_b: [other, None, None],
-                frame: Some(Frame::new(normal, Some(tangent)).unwrap()),
-                ..Contact::friction_2d([None; 2], [None; 2], (kt, kn), mu, 0.0)
-            };
-            model.add_contact(&contact).unwrap();
-        }
-        let weight = numbers.within(0.5, 1.5);
-        model.add_force(u + 1, 0, Complex64::new(weight, 0.0)).unwrap();
+        model = model
+            .contact(damper_face([u, u + 1], 1.0, None, [kt, kn, platform]))
+            .contact(damper_face([u, u + 1], -1.0, Some(0), [kt, kn, blade]))
+            .force(u + 1, 0, numbers.within(0.5, 1.5));
     }
-    let force = numbers.within(0.05, 0.15);
-    model.add_force(0, 1, Complex64::new(force, 0.0)).unwrap();
+    let model = model.force(0, 1, numbers.within(0.05, 0.15)).build();
     (model, numbers.within(1.1, 1.7))
 }
 
@@ -132,24 +112,15 @@ fn no_random_state_of_twenty_models_with_two_dampers_lies_outside_the_band() {
 /// Two to four masses on springs with as many contacts under varying loads, pressed by constant forces of any size, and a frequency.
 fn any_contacts(numbers: &mut Numbers) -> (Model, f64) {
     let n = 3 + (4.0 * numbers.next()) as usize;
-    let mut model = Model::new(n).unwrap();
-    let mut stiffness = vec![0.0; n * n];
+    let (mut ground, mut between) = (vec![], vec![]);
     for i in 0..n {
-        stiffness[i * n + i] += numbers.within(0.5, 2.0);
+        ground.push(numbers.within(0.5, 2.0));
         if i > 0 {
-            let k = numbers.next();
-            stiffness[i * n + i] += k;
-            stiffness[(i - 1) * n + i - 1] += k;
-            stiffness[i * n + i - 1] -= k;
-            stiffness[(i - 1) * n + i] -= k;
+            between.push(numbers.next());
         }
     }
     let masses: Vec<f64> = (0..n).map(|_| numbers.within(0.05, 1.0)).collect();
-    diagonal(&mut model, MatrixKind::Mass, &masses);
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &stiffness))
-        .unwrap();
-    model.set_rayleigh(0.0, 0.03).unwrap();
+    let mut model = coupled(&masses, &ground, &between).rayleigh(0.0, 0.03).build();
     for _ in 0..2 + (3.0 * numbers.next()) as usize {
         let along = (n as f64 * numbers.next()) as usize;
         let out = (along + 1 + ((n - 1) as f64 * numbers.next()) as usize) % n;
@@ -192,11 +163,7 @@ fn bands_of_stuck_models(models: std::ops::Range<u64>, trials: usize) -> usize {
             numbers.next();
         }
         let (model, omega) = any_contacts(&mut numbers);
-        let range = ForcedOptions {
-            omega_start: omega,
-            omega_stop: omega,
-            ..ForcedOptions::default()
-        };
+        let range = omega_range(omega, omega);
         let at = |model: &Model| forced_response(model, &solver, &range, &mut Hooks::default()).ok();
         let Some(branch) = at(&model) else { continue };
         let sticks = (0..branch.contacts()).any(|c| {

@@ -1,10 +1,8 @@
 //! Undamped resonances forced beyond what the contacts can take: which are told, and which are not.
 
-use crate::common::{self, D, R, harmonics};
-use hbvib::{
-    Branch, Contact, ContactState, ForcedOptions, Hooks, Interrupt, MatrixKind, MatrixView, Model, Result, Status,
-    forced_response,
-};
+use crate::common::models::{self, Structure, dense, diagonal};
+use crate::common::{self, D, R, harmonics, omega_range};
+use hbvib::{Branch, Contact, ContactState, Hooks, Interrupt, Model, Result, Status, forced_response};
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -12,29 +10,12 @@ const N: usize = 6;
 
 /// A chain of unequal masses on springs, both ends held.
 fn chain(damping: f64) -> Model {
-    let mut model = Model::new(N).unwrap();
-    let (mut mass, mut stiffness) = (vec![0.0; N * N], vec![0.0; N * N]);
-    for i in 0..N {
-        mass[i * N + i] = 1.0 + 0.3 * i as f64;
-        stiffness[i * N + i] = 2.0;
-        if i > 0 {
-            stiffness[i * N + i - 1] = -1.0;
-            stiffness[(i - 1) * N + i] = -1.0;
-        }
-    }
-    for (kind, a) in [(MatrixKind::Mass, &mass), (MatrixKind::Stiffness, &stiffness)] {
-        model.set_matrix(kind, &MatrixView::dense(N, a)).unwrap();
-    }
-    model.set_rayleigh(0.0, damping).unwrap();
-    model
+    let mass: Vec<f64> = (0..N).map(|i| 1.0 + 0.3 * i as f64).collect();
+    models::chain(&mass, &[1.0; N + 1]).rayleigh(0.0, damping).build()
 }
 
 fn solve(model: &Model, omega: f64, h: usize) -> Result<Branch> {
-    let range = ForcedOptions {
-        omega_start: omega,
-        omega_stop: omega,
-        ..ForcedOptions::default()
-    };
+    let range = omega_range(omega, omega);
     forced_response(model, &harmonics(h), &range, &mut Hooks::default())
 }
 
@@ -124,16 +105,12 @@ fn what_has_a_solution_is_never_refused() {
 /// Masses alike have one frequency and many modes; the force picks the one that it drives.
 #[test]
 fn of_repeated_resonances_the_force_picks_the_one_it_drives() {
-    let mut model = Model::new(3).unwrap();
-    let one: Vec<f64> = (0..9).map(|i| if i % 4 == 0 { 1.0 } else { 0.0 }).collect();
-    for kind in [MatrixKind::Mass, MatrixKind::Stiffness] {
-        model.set_matrix(kind, &MatrixView::dense(3, &one)).unwrap();
-    }
-    for dof in 0..3 {
-        model.add_contact(&Contact::jenkins(dof, None, 1.0, 1.0, 0.3)).unwrap();
-    }
+    let one = diagonal(&[1.0; 3]);
     // All of them can bear 0.9 × 4/π, but not the first alone.
-    model.add_force(0, 1, 0.5.into()).unwrap();
+    let model = dense(&one, &one)
+        .contacts((0..3).map(|dof| Contact::jenkins(dof, None, 1.0, 1.0, 0.3)))
+        .force(0, 1, 0.5)
+        .build();
     let resonance = model.resonance(1.0, 1, &Interrupt::none()).unwrap().unwrap();
     assert!((resonance.force - 0.5).abs() < 1e-12 && (resonance.slip_capacity - 1.2 / PI).abs() < 1e-12);
     assert!(refused(&model, 1.0, 3));
@@ -170,14 +147,12 @@ fn a_travelling_wave_is_refused_by_the_mode_of_its_diameter() {
 #[test]
 fn a_free_body_is_dragged_by_a_constant_load_above_the_slip_limit() {
     let of = |load: f64| {
-        let mut model = Model::new(1).unwrap();
-        model
-            .set_matrix(MatrixKind::Mass, &MatrixView::dense(1, &[1.0]))
-            .unwrap();
-        model.add_contact(&Contact::jenkins(0, None, 1.0, 1.0, 0.3)).unwrap();
-        model.add_force(0, 0, load.into()).unwrap();
-        model.add_force(0, 1, 0.1.into()).unwrap();
-        model
+        Structure::plain(1)
+            .mass(&[1.0])
+            .slider(0, 1.0, 1.0, 0.3)
+            .force(0, 0, load)
+            .force(0, 1, 0.1)
+            .build()
     };
     let resonance = of(0.31).resonance(0.7, 0, &Interrupt::none()).unwrap().unwrap();
     assert!((resonance.force - 0.31).abs() < 1e-15 && (resonance.slip_capacity - 0.3).abs() < 1e-15);
@@ -202,11 +177,7 @@ fn a_sweep_into_such_a_resonance_keeps_its_points_and_says_why_it_ends() {
     };
     for (from, to) in [(0.7, 1.3), (1.3, 0.7)] {
         let (from, to) = (from * omega, to * omega);
-        let range = ForcedOptions {
-            omega_start: from,
-            omega_stop: to,
-            ..ForcedOptions::default()
-        };
+        let range = omega_range(from, to);
         let sweep = |model: &Model| forced_response(model, &harmonics(5), &range, &mut Hooks::default()).unwrap();
         let branch = sweep(&of(0.0));
         assert_eq!(branch.status(), Status::StoppedStepTooSmall);

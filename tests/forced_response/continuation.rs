@@ -1,10 +1,9 @@
 //! Following the response over a range: ends, directions, wanted frequencies, stops, corners, and
 //! friction cases on which other tools walk back and forth or stop short. All same-H solutions.
 
-use crate::common::{self, BASE, Blisk, all_harmonics, harmonics, solve_at, sweep};
-use hbvib::{
-    Branch, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, Status, forced_response,
-};
+use crate::common::models::{dense, diagonal};
+use crate::common::{self, BASE, Blisk, all_harmonics, harmonics, omega_range, solve_at, sweep};
+use hbvib::{Branch, Contact, Hooks, Model, SolverOptions, Status, forced_response};
 use std::cell::Cell;
 use std::f64::consts::{PI, TAU};
 
@@ -90,11 +89,7 @@ fn the_limit_on_points_keeps_what_was_found() {
 #[test]
 fn a_hook_that_stops_keeps_what_was_found_and_sees_every_point() {
     let model = BASE.sector();
-    let range = ForcedOptions {
-        omega_start: HIGH,
-        omega_stop: LOW,
-        ..ForcedOptions::default()
-    };
+    let range = omega_range(HIGH, LOW);
     let mut seen = Vec::new();
     let mut stop_at_5 = |p: &hbvib::Progress| {
         seen.push((p.point, p.parameter, p.fraction_done));
@@ -118,11 +113,7 @@ fn a_hook_that_stops_keeps_what_was_found_and_sees_every_point() {
 
 #[test]
 fn a_cancel_at_any_check_keeps_what_was_found() {
-    let range = ForcedOptions {
-        omega_start: LOW,
-        omega_stop: HIGH,
-        ..ForcedOptions::default()
-    };
+    let range = omega_range(LOW, HIGH);
     // Asked in every long loop: at once, in the set-up, and after some points.
     for patience in [0, 1, 10, 60, 300, 3_000] {
         let asked = Cell::new(0);
@@ -223,10 +214,6 @@ fn chain(force: f64) -> Model {
     let wave = (PI / 12.0).sin().powi(2);
     let (outer, inner) = (2e6, 1e6);
     let (disk, ring) = (6e5 + 4.0 * 5e7 * wave, 4.0 * 2e7 * wave);
-    let mut mass = vec![0.0; 16];
-    for (i, m) in [0.2, 0.3, 1.2, 0.03].into_iter().enumerate() {
-        mass[5 * i] = m;
-    }
     #[rustfmt::skip]
     let stiffness = [
         outer, -outer, 0.0, 0.0,
@@ -234,17 +221,11 @@ fn chain(force: f64) -> Model {
         0.0, -inner, inner + disk, 0.0,
         0.0, 0.0, 0.0, ring,
     ];
-    let mut model = Model::new(4).unwrap();
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(4, &mass))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(4, &stiffness))
-        .unwrap();
-    model.set_rayleigh(0.0, 2e-6).unwrap();
-    model.add_contact(&Contact::jenkins(2, Some(3), 5e7, 1.0, 5.0)).unwrap();
-    model.add_force(0, 1, force.into()).unwrap();
-    model
+    dense(&diagonal(&[0.2, 0.3, 1.2, 0.03]), &stiffness)
+        .rayleigh(0.0, 2e-6)
+        .contact(Contact::jenkins(2, Some(3), 5e7, 1.0, 5.0))
+        .force(0, 1, force)
+        .build()
 }
 
 #[test]
@@ -261,26 +242,13 @@ fn a_case_on_which_others_walk_back_and_forth_is_covered_at_every_force() {
 
 /// A chain of masses with sliders, driven in the first harmonic and at its end in the second.
 fn masses(mass: &[f64], stiffness: &[f64], beta: f64, sliders: &[(usize, usize, f64, f64)], second: f64) -> Model {
-    let n = mass.len();
-    let mut matrix = vec![0.0; n * n];
-    for (i, m) in mass.iter().enumerate() {
-        matrix[i * n + i] = *m;
-    }
-    let mut model = Model::new(n).unwrap();
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &matrix))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, stiffness))
-        .unwrap();
-    model.set_rayleigh(0.0, beta).unwrap();
-    for &(a, b, kt, limit) in sliders {
-        let other = (a != b).then_some(b);
-        model.add_contact(&Contact::jenkins(a, other, kt, 1.0, limit)).unwrap();
-    }
-    model.add_force(0, 1, 1.0.into()).unwrap();
-    model.add_force(n - 1, 2, second.into()).unwrap();
-    model
+    let slider = |&(a, b, kt, limit): &_| Contact::jenkins(a, (a != b).then_some(b), kt, 1.0, limit);
+    dense(&diagonal(mass), stiffness)
+        .rayleigh(0.0, beta)
+        .contacts(sliders.iter().map(slider))
+        .force(0, 1, 1.0)
+        .force(mass.len() - 1, 2, second)
+        .build()
 }
 
 #[test]

@@ -1,34 +1,18 @@
 //! Dampers under platforms by one call: against the same wedge by hand, stiffness matrices assembled by hand, closed forms of a
 //! cylinder between planes while the speed rises and falls, and the wheel of a sector.
 
+use crate::common::models::{self, Structure, diagonal, oscillator};
 use crate::common::refusal::refused;
 use crate::common::{all_harmonics, harmonics, relative_gap, solve_at, sweep};
 use hbvib::{
-    BandOf, BandOptions, Contact, Damper, DamperFace, Frame, Hooks, Interrupt, LoadHistory, MatrixKind, MatrixView,
-    Model, Parameter, Quantity, SolverOptions, Speed, Status, band, freedom, sensitivity, static_history,
+    BandOf, BandOptions, Damper, DamperFace, Hooks, Interrupt, LoadHistory, MatrixKind, MatrixView, Model, Parameter,
+    Quantity, SolverOptions, Speed, Status, band, freedom, sensitivity, static_history,
 };
 use num_complex::Complex64;
-use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4, TAU};
-
-fn diagonal(model: &mut Model, which: MatrixKind, values: &[f64]) {
-    let n = values.len();
-    let mut full = vec![0.0; n * n];
-    for (i, x) in values.iter().enumerate() {
-        full[i * n + i] = *x;
-    }
-    model.set_matrix(which, &MatrixView::dense(n, &full)).unwrap();
-}
+use std::f64::consts::{FRAC_PI_4, TAU};
 
 fn blade() -> Model {
-    let mut model = Model::new(1).unwrap();
-    for (which, value) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Damping, 0.04),
-        (MatrixKind::Stiffness, 1.0),
-    ] {
-        diagonal(&mut model, which, &[value]);
-    }
-    model
+    oscillator(1.0, 1.0).damping(&[0.04]).build()
 }
 
 const WEDGE: [DamperFace; 2] = [face(None, -FRAC_PI_4, 0.6), face(Some(0), FRAC_PI_4, 0.15)];
@@ -69,26 +53,13 @@ fn wedge() -> Model {
 }
 
 fn wedge_by_hand() -> Model {
-    let mut model = Model::new(3).unwrap();
-    diagonal(&mut model, MatrixKind::Mass, &[1.0, 0.01, 0.01]);
-    diagonal(&mut model, MatrixKind::Damping, &[0.04, 4e-3, 4e-3]);
-    diagonal(&mut model, MatrixKind::Stiffness, &[1.0, 1e-3, 1e-3]);
-    let r = FRAC_1_SQRT_2;
-    for (normal, tangent, blade, mu) in [
-        ([r, -r, 0.0], [r, r, 0.0], None, 0.6),
-        ([-r, -r, 0.0], [-r, r, 0.0], Some(0), 0.15),
-    ] {
-        let contact = Contact {
-            dof_a: [Some(1), Some(2), None],
-            dof_b: [blade, None, None],
-            frame: Some(Frame::new(normal, Some(tangent)).unwrap()),
-            ..Contact::friction_2d([None; 2], [None; 2], (1.0, 1.5), mu, 0.0)
-        };
-        model.add_contact(&contact).unwrap();
-    }
-    model.add_force(2, 0, Complex64::new(1.0, 0.0)).unwrap();
-    model.add_force(0, 1, Complex64::new(0.02, 0.0)).unwrap();
-    model
+    Structure::plain(3)
+        .diagonals([&[1.0, 0.01, 0.01], &[0.04, 4e-3, 4e-3], &[1.0, 1e-3, 1e-3]])
+        .contact(models::damper_face([1, 2], 1.0, None, [1.0, 1.5, 0.6]))
+        .contact(models::damper_face([1, 2], -1.0, Some(0), [1.0, 1.5, 0.15]))
+        .force(2, 0, 1.0)
+        .force(0, 1, 0.02)
+        .build()
 }
 
 #[test]
@@ -132,22 +103,18 @@ fn a_damper_that_sticks_is_a_matrix_of_springs() {
     let (mass, radius, length) = (0.2, 0.3, 0.8);
     let angles = [-0.5, 0.8];
     let turn = 0.35;
-    let mut model = Model::new(3).unwrap();
-    diagonal(&mut model, MatrixKind::Mass, &[1.0, 1.2, 0.9]);
-    diagonal(&mut model, MatrixKind::Damping, &[0.05, 0.04, 0.03]);
-    diagonal(&mut model, MatrixKind::Stiffness, &[2.0, 3.0, 2.5]);
-    let mut linear = Model::new(N).unwrap();
+    let mut model = Structure::plain(3)
+        .diagonals([&[1.0, 1.2, 0.9], &[0.05, 0.04, 0.03], &[2.0, 3.0, 2.5]])
+        .build();
     let (across, roll) = (
         mass * (3.0 * radius * radius + length * length) / 12.0,
         0.5 * mass * radius * radius,
     );
     let inertia = [1.0, 1.2, 0.9, mass, mass, mass, across, across, roll];
-    diagonal(&mut linear, MatrixKind::Mass, &inertia);
-    diagonal(
-        &mut linear,
-        MatrixKind::Damping,
-        &[0.05, 0.04, 0.03, 0.01, 0.01, 0.01, 0.0, 0.0, 0.0],
-    );
+    let mut linear = Structure::plain(N)
+        .mass(&diagonal(&inertia))
+        .damping(&diagonal(&[0.05, 0.04, 0.03, 0.01, 0.01, 0.01, 0.0, 0.0, 0.0]))
+        .build();
     let mut k = [[0.0; N]; N];
     for (i, value) in [2.0, 3.0, 2.5].into_iter().enumerate() {
         k[i][i] = value;
@@ -304,11 +271,10 @@ fn a_cylinder_keeps_the_forces_of_the_speeds_that_it_has_had() {
 
 /// A sector with a damper between its blade and that of the next sector.
 fn sector() -> Model {
-    let mut model = Model::cyclic(1, 12).unwrap();
-    diagonal(&mut model, MatrixKind::Mass, &[1.0]);
-    diagonal(&mut model, MatrixKind::Stiffness, &[1.0]);
-    diagonal(&mut model, MatrixKind::Damping, &[0.02]);
-    model.set_wave(2);
+    let mut model = Structure::cyclic(1, 12)
+        .matrices([&[1.0], &[0.02], &[1.0]])
+        .wave(2)
+        .build();
     let mut faces = WEDGE;
     faces[0].dofs = [Some(0), None, None];
     faces[1].sector_offset = 1;

@@ -4,6 +4,7 @@
 
 use crate::common::depth::some_of;
 use crate::common::friction::Random;
+use crate::common::{harmonics, omega_range};
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 use hbvib::{
@@ -171,11 +172,9 @@ impl Case {
 
     fn options(&self) -> SolverOptions {
         SolverOptions {
-            tolerance: 0.0,
-            harmonics: self.harmonics,
             response_dof: Some(self.response),
             max_points: 120,
-            ..SolverOptions::default()
+            ..harmonics(self.harmonics)
         }
     }
 
@@ -253,13 +252,8 @@ fn compare(case: &Case) {
     let (start, end) = case.range;
     let at = [0.3, 0.77].map(|x| start + (end - start) * x);
     let forced = ForcedOptions {
-        omega_start: start,
-        omega_stop: end,
         at: &at,
-        guess: None,
-        responses: &[],
-        together: false,
-        ..ForcedOptions::default()
+        ..omega_range(start, end)
     };
     let named = format!(
         "{} {:?} {:?}, {} contacts, H = {}, {start} .. {end}",
@@ -353,13 +347,8 @@ fn points_of_sweeps_that_slip_are_those_of_single_frequencies() {
             let model = case.model(0.3 * case.kt * most);
             let at = [middle];
             let forced = ForcedOptions {
-                omega_start: case.range.0,
-                omega_stop: case.range.1,
                 at: &at,
-                guess: None,
-                responses: &[],
-                together: false,
-                ..ForcedOptions::default()
+                ..omega_range(case.range.0, case.range.1)
             };
             let options = case.options();
             let named = format!("{n} {shape:?} {damping:?}");
@@ -373,13 +362,8 @@ fn points_of_sweeps_that_slip_are_those_of_single_frequencies() {
                 branch.harmonics_at(point, &mut motion).unwrap();
                 let omega = branch.omega_at(point).unwrap();
                 let single = ForcedOptions {
-                    omega_start: omega,
-                    omega_stop: omega,
-                    at: &[],
                     guess: Some(&motion),
-                    responses: &[],
-                    together: false,
-                    ..ForcedOptions::default()
+                    ..omega_range(omega, omega)
                 };
                 let one = forced_response(&model, &options, &single, &mut Hooks::default())
                     .unwrap_or_else(|e| panic!("{named}: {omega} alone: {e}"));

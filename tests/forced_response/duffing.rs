@@ -1,11 +1,12 @@
 //! Duffing's oscillator, a mass on a cubic spring, forced: with one harmonic against the closed form
 //! of its describing function, with many against the motion marched in time.
 
+use crate::common::models::{oscillator, unit_chain};
 use crate::common::{self, harmonics, relative_gap, solve_at, sweep};
 use hbvib::internals::HarmonicBalance;
 use hbvib::internals::{Condensed, Reference};
 use hbvib::internals::{InitialGuess, Problem};
-use hbvib::{Contact, ContactState, Interrupt, MatrixKind, MatrixView, Model, forced_residual};
+use hbvib::{Contact, ContactState, Interrupt, Model, forced_residual};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -51,17 +52,11 @@ const FLOATING: Duffing = Duffing {
 
 impl Duffing {
     fn model(&self) -> Model {
-        let mut model = Model::new(1).unwrap();
-        for (kind, value) in [
-            (MatrixKind::Mass, 1.0),
-            (MatrixKind::Damping, self.c),
-            (MatrixKind::Stiffness, self.k),
-        ] {
-            model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
-        }
-        model.add_contact(&Contact::cubic(0, None, self.kt, self.k3)).unwrap();
-        model.add_force(0, 1, self.force.into()).unwrap();
-        model
+        oscillator(1.0, self.k)
+            .damping(&[self.c])
+            .contact(Contact::cubic(0, None, self.kt, self.k3))
+            .force(0, 1, self.force)
+            .build()
     }
 
     /// Detuning k + kt − ω² + ¾ k3 s of one harmonic, s = |X|².
@@ -292,25 +287,11 @@ fn solve_static(model: &Model) -> Option<f64> {
 /// A damped chain held by cubic springs, by friction and by both, with more unknowns than make the
 /// library look from the stuck structure.
 fn chain(contacts: impl Fn(&mut Model, usize)) -> Model {
-    let n = 24;
-    let mut model = Model::new(n).unwrap();
-    let mut stiffness = vec![0.0; n * n];
-    let mut mass = vec![0.0; n * n];
-    for i in 0..n {
-        mass[i * n + i] = 1.0;
-        stiffness[i * n + i] = 2.0;
-        if i > 0 {
-            stiffness[i * n + i - 1] = -1.0;
-            stiffness[(i - 1) * n + i] = -1.0;
-        }
-        contacts(&mut model, i);
-    }
-    for (kind, a) in [(MatrixKind::Mass, &mass), (MatrixKind::Stiffness, &stiffness)] {
-        model.set_matrix(kind, &MatrixView::dense(n, a)).unwrap();
-    }
-    model.set_rayleigh(0.0, 0.02).unwrap();
-    model.add_force(0, 1, 3.0.into()).unwrap();
-    model
+    unit_chain(24)
+        .with(|model| (0..24).for_each(|i| contacts(model, i)))
+        .rayleigh(0.0, 0.02)
+        .force(0, 1, 3.0)
+        .build()
 }
 
 #[test]

@@ -2,29 +2,16 @@
 //! harmonic against the closed form of its describing function, with many against converged values of
 //! the truth (two independent methods each: collocation and time integration).
 
+use crate::common::chains::duffing;
 use crate::common::{harmonics, sweep};
-use hbvib::{Branch, Contact, MatrixKind, MatrixView, Model};
+use hbvib::Branch;
 
 const C: f64 = 0.05;
 const CUBIC: f64 = 0.1;
 const F: f64 = 0.18;
 
-fn oscillator() -> Model {
-    let mut model = Model::new(1).unwrap();
-    for (kind, value) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Damping, C),
-        (MatrixKind::Stiffness, 1.0),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
-    }
-    model.add_contact(&Contact::cubic(0, None, 0.0, CUBIC)).unwrap();
-    model.add_force(0, 1, F.into()).unwrap();
-    model
-}
-
 fn response(highest: usize, at: &[f64]) -> Branch {
-    sweep(&oscillator(), &harmonics(highest), 0.5, 1.6, at)
+    sweep(&duffing(C, CUBIC, F), &harmonics(highest), 0.5, 1.6, at)
 }
 
 fn close(what: &str, found: f64, wanted: f64, tolerance: f64) {

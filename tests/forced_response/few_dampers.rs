@@ -1,6 +1,7 @@
 //! Damping of few directions beside αM + βK, dashpots and ratios of some modes: sums over modes, poles and bases respond as the factors of
 //! single frequencies do, on both sides of each size at which the way changes, at first, last and requested points.
 
+use crate::common::{at_dof, omega_range};
 use crate::reduced_structures::{plate, point};
 use hbvib::internals::FlexibilityWay::Modes;
 use hbvib::{Flexibility, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, forced_response};
@@ -51,10 +52,8 @@ fn compare(side: usize, damping: Damping, solver: &SolverOptions) {
     let model = damped(side, damping);
     let at = [0.163, 0.19];
     let range = ForcedOptions {
-        omega_start: 0.15,
-        omega_stop: 0.2,
         at: &at,
-        ..ForcedOptions::default()
+        ..omega_range(0.15, 0.2)
     };
     let branch = forced_response(&model, solver, &range, &mut Hooks::default()).unwrap();
     let reduction = branch.reduction();
@@ -77,12 +76,7 @@ fn compare(side: usize, damping: Damping, solver: &SolverOptions) {
 }
 
 fn fixed(harmonics: usize) -> SolverOptions {
-    SolverOptions {
-        tolerance: 0.0,
-        harmonics,
-        response_dof: Some(89),
-        ..SolverOptions::default()
-    }
+    at_dof(89, crate::common::harmonics(harmonics))
 }
 
 #[test]
@@ -109,11 +103,7 @@ fn dampers_of_few_directions_have_sums_for_estimates() {
             response_dof: Some(89),
             ..SolverOptions::default()
         };
-        let range = ForcedOptions {
-            omega_start: 0.15,
-            omega_stop: 0.2,
-            ..ForcedOptions::default()
-        };
+        let range = omega_range(0.15, 0.2);
         let branch = forced_response(&model, &solver, &range, &mut Hooks::default()).unwrap();
         assert_eq!(branch.reduction().flexibility_way, Modes, "{side}");
         let last = branch.points() - 1;

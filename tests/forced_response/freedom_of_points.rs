@@ -1,31 +1,22 @@
 //! The freedom of all points of a sweep, as columns of its branch: that of the call for each point, at hardly any work where nothing is
 //! free.
 
-use crate::common::{harmonics, solve_at, sweep};
+use crate::common::models::dense;
+use crate::common::{harmonics, omega_range, solve_at, sweep};
 use crate::residual_band::{across, peak_wedge, wedge};
 use hbvib::{
-    Contact, ContactKind, ForcedOptions, Friction2d, Hooks, MatrixKind, MatrixView, Model, Phase, PhaseReport,
-    SolverOptions, Speed, Status, forced_response, freedom,
+    Contact, ContactKind, Friction2d, Hooks, Model, Phase, PhaseReport, SolverOptions, Speed, Status, forced_response,
+    freedom,
 };
-use num_complex::Complex64;
 
 /// Models without any freedom, and ranges of frequency: contacts that slip, and the ring damper.
 pub fn without_freedom() -> [(Model, f64, f64); 2] {
-    let mut slipping = Model::new(2).unwrap();
-    for (which, d) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Damping, 0.05),
-        (MatrixKind::Stiffness, 1.0),
-    ] {
-        slipping
-            .set_matrix(which, &MatrixView::dense(2, &[d, 0.0, 0.0, d]))
-            .unwrap();
-    }
-    slipping.add_contact(&Contact::jenkins(0, None, 1.0, 0.2, 1.0)).unwrap();
-    slipping
-        .add_contact(&Contact::jenkins(0, Some(1), 0.5, 0.2, 0.5))
-        .unwrap();
-    slipping.add_force(0, 1, Complex64::new(0.6, 0.0)).unwrap();
+    let slipping = dense(&[1.0, 0.0, 0.0, 1.0], &[1.0, 0.0, 0.0, 1.0])
+        .damping(&[0.05, 0.0, 0.0, 0.05])
+        .slider(0, 1.0, 0.2, 1.0)
+        .contact(Contact::jenkins(0, Some(1), 0.5, 0.2, 0.5))
+        .force(0, 1, 0.6)
+        .build();
     let turn = std::f64::consts::TAU;
     [
         (slipping, 0.8, 1.8),
@@ -86,11 +77,7 @@ fn a_sweep_has_the_freedom_of_each_of_its_points() {
                 cancelled: Some(&count),
                 ..Hooks::default()
             };
-            let range = ForcedOptions {
-                omega_start: from,
-                omega_stop: to,
-                ..ForcedOptions::default()
-            };
+            let range = omega_range(from, to);
             let solver = SolverOptions {
                 freedom,
                 ..harmonics(9)
@@ -124,11 +111,7 @@ fn a_stop_in_the_freedom_leaves_the_curve() {
         phase: Some(&phase),
         ..Hooks::default()
     };
-    let range = ForcedOptions {
-        omega_start: 1.23,
-        omega_stop: 1.27,
-        ..ForcedOptions::default()
-    };
+    let range = omega_range(1.23, 1.27);
     let branch = forced_response(&model, &solver, &range, &mut hooks).unwrap();
     assert_eq!(branch.status(), Status::StoppedByCaller);
     assert_eq!(branch.points(), whole.points());

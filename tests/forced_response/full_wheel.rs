@@ -1,6 +1,7 @@
 //! One sector under an engine order equals the full wheel: the same-H solution of the same physics
 //! as a plain structure, in every harmonic, degree of freedom and sector.
 
+use crate::common::models::Structure;
 use crate::common::{
     BASE, Blisk, SECTORS, Wheel, all_harmonics, harmonics, largest, phase, relative_gap, slip, solve_at,
 };
@@ -108,23 +109,15 @@ impl Skewed {
     }
 
     fn sector(&self) -> Model {
-        let mut model = Model::cyclic(N, SECTORS).unwrap();
-        let dense = |a| MatrixView::dense(N, a);
-        model.set_matrix(MatrixKind::Mass, &dense(&MASS)).unwrap();
-        model.set_matrix(MatrixKind::Damping, &dense(&DAMPING)).unwrap();
-        model.set_matrix(MatrixKind::Stiffness, &dense(&STIFFNESS)).unwrap();
-        model.set_coupling(MatrixKind::Mass, &dense(&MASS_NEXT)).unwrap();
-        model
-            .set_coupling(MatrixKind::Stiffness, &dense(&STIFFNESS_NEXT))
-            .unwrap();
-        model.set_coupling(MatrixKind::Damping, &dense(&DAMPING_NEXT)).unwrap();
+        let mut sector = Structure::cyclic(N, SECTORS)
+            .matrices([&MASS, &DAMPING, &STIFFNESS])
+            .next(MatrixKind::Mass, &MASS_NEXT)
+            .next(MatrixKind::Stiffness, &STIFFNESS_NEXT)
+            .next(MatrixKind::Damping, &DAMPING_NEXT);
         if self.general {
-            model
-                .set_coupling_previous(MatrixKind::Damping, &dense(&DAMPING_PREVIOUS))
-                .unwrap();
+            sector = sector.previous(MatrixKind::Damping, &DAMPING_PREVIOUS);
         }
-        self.load(&mut model);
-        model
+        sector.with(|model| self.load(model)).build()
     }
 
     /// Everything but the matrices.

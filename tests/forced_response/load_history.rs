@@ -1,10 +1,11 @@
 //! Static states along a load history, against closed forms: a cylinder on two inclined planes that a centrifugal force presses between
 //! them, up and down; and the residual force that a response then has.
 
+use crate::common::models::{Structure, dense, oscillator};
 use crate::common::{harmonics, solve_at};
 use hbvib::{
-    Constant, Contact, ContactKind, Frame, Friction2d, Friction3d, Hooks, Interrupt, LoadHistory, MatrixKind,
-    MatrixView, Model, SolverOptions, Speed, SteadyMethod, TimeOptions, freedom, static_history, time_response,
+    Constant, Contact, ContactKind, Frame, Friction2d, Friction3d, Hooks, Interrupt, LoadHistory, Model, SolverOptions,
+    Speed, SteadyMethod, TimeOptions, freedom, static_history, time_response,
 };
 use num_complex::Complex64;
 
@@ -18,15 +19,9 @@ const BETA: f64 = 0.9;
 /// The cylinder, along the platform, outward and, if `across`, along its axis.
 fn cylinder(kind: &ContactKind, across: bool) -> Model {
     let n = 2 + usize::from(across);
-    let mut model = Model::new(n).unwrap();
-    for (which, d) in [
-        (MatrixKind::Mass, 0.1),
-        (MatrixKind::Damping, 0.01),
-        (MatrixKind::Stiffness, SUPPORT),
-    ] {
-        let full: Vec<f64> = (0..n * n).map(|i| if i % (n + 1) == 0 { d } else { 0.0 }).collect();
-        model.set_matrix(which, &MatrixView::dense(n, &full)).unwrap();
-    }
+    let mut model = Structure::plain(n)
+        .diagonals([&vec![0.1; n], &vec![0.01; n], &vec![SUPPORT; n]])
+        .build();
     let (s, c) = BETA.sin_cos();
     for side in [1.0, -1.0] {
         let contact = Contact {
@@ -122,11 +117,7 @@ fn a_response_after_a_history_has_its_residual_force() {
 /// A preload m R Omega^2 that rises and falls under a constant pull.
 #[test]
 fn a_slider_under_a_load_of_the_speed_is_dragged_where_the_load_falls() {
-    let mut model = Model::new(1).unwrap();
-    for (which, d) in [(MatrixKind::Mass, 1.0), (MatrixKind::Stiffness, 1.0)] {
-        model.set_matrix(which, &MatrixView::dense(1, &[d])).unwrap();
-    }
-    model.add_contact(&Contact::jenkins(0, None, 1.0, 0.5, 0.0)).unwrap();
+    let mut model = oscillator(1.0, 1.0).slider(0, 1.0, 0.5, 0.0).build();
     model.set_preload_at_speed(0, 0.0, 1.0).unwrap();
     model.set_speed(Speed::Fixed(1.0)).unwrap();
     model.add_force(0, 0, Complex64::new(1.0, 0.0)).unwrap();
@@ -160,17 +151,12 @@ fn histories_that_are_none_are_refused_by_name() {
 /// overshoots and drags it further. Harmonic balance from either place is the motion in time.
 #[test]
 fn integration_in_time_leaves_the_slider_where_the_vibration_has_dragged_it() {
-    let mut model = Model::new(1).unwrap();
-    for (which, value) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Damping, 0.1),
-        (MatrixKind::Stiffness, 1.0),
-    ] {
-        model.set_matrix(which, &MatrixView::dense(1, &[value])).unwrap();
-    }
-    model.add_contact(&Contact::jenkins(0, None, 1.0, 0.3, 1.0)).unwrap();
-    model.add_force(0, 0, Complex64::new(0.6, 0.0)).unwrap();
-    model.add_force(0, 1, Complex64::new(0.1, 0.0)).unwrap();
+    let model = oscillator(1.0, 1.0)
+        .damping(&[0.1])
+        .slider(0, 1.0, 0.3, 1.0)
+        .force(0, 0, 0.6)
+        .force(0, 1, 0.1)
+        .build();
     let mut places = Vec::new();
     for method in [SteadyMethod::Shooting, SteadyMethod::Marching] {
         let options = TimeOptions {
@@ -200,15 +186,10 @@ fn integration_in_time_leaves_the_slider_where_the_vibration_has_dragged_it() {
 #[test]
 fn without_contacts_the_states_are_those_of_the_stiffness() {
     let stiffness = [3.0, -1.0, -1.0, 2.0];
-    let mut model = Model::new(2).unwrap();
-    for (which, values) in [
-        (MatrixKind::Mass, [1.0, 0.0, 0.0, 1.0]),
-        (MatrixKind::Stiffness, stiffness),
-    ] {
-        model.set_matrix(which, &MatrixView::dense(2, &values)).unwrap();
-    }
-    model.add_force(1, 0, Complex64::new(0.7, 0.0)).unwrap();
-    model.add_force(0, 1, Complex64::new(5.0, 0.0)).unwrap();
+    let model = dense(&[1.0, 0.0, 0.0, 1.0], &stiffness)
+        .force(1, 0, 0.7)
+        .force(0, 1, 5.0)
+        .build();
     let states = |model: &Model| {
         let history = LoadHistory {
             factors: &[1.0, -2.0, 0.0],
@@ -241,19 +222,16 @@ fn without_contacts_the_states_are_those_of_the_stiffness() {
 #[test]
 fn a_contact_that_closes_within_a_step_sticks_where_it_closes() {
     let (kt, kn, mu, gap) = (2.0, 5.0, 0.8, 0.3);
-    let mut model = Model::new(2).unwrap();
-    for kind in [MatrixKind::Mass, MatrixKind::Stiffness] {
-        model
-            .set_matrix(kind, &MatrixView::dense(2, &[1.0, 0.0, 0.0, 1.0]))
-            .unwrap();
-    }
     let contact = Contact::friction_2d([Some(0), Some(1)], [None; 2], (kt, kn), mu, 0.0)
         .with(Constant::Gap, gap)
         .unwrap();
-    model.add_contact(&contact).unwrap();
     // It closes against the ground, and the force along is half of that towards it.
-    model.add_force(0, 0, 0.5.into()).unwrap();
-    model.add_force(1, 0, (-1.0).into()).unwrap();
+    let one = [1.0, 0.0, 0.0, 1.0];
+    let model = dense(&one, &one)
+        .contact(&contact)
+        .force(0, 0, 0.5)
+        .force(1, 0, -1.0)
+        .build();
     // Displacement along and place of the slider under the load f: closed from f = gap on, at the displacement gap/2.
     let exact = |f: f64| {
         let place = if f > gap { 0.5 * gap } else { 0.5 * f };

@@ -1,10 +1,9 @@
 //! Chains with so many sliding contacts that Newton's matrix is solved by iteration. The truth is the same-H residual,
 //! evaluated without condensation, and the other direction of the sweep.
 
-use hbvib::{
-    Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, Status, forced_residual,
-    forced_response,
-};
+use crate::common::models;
+use crate::common::{at_dof, harmonics, omega_range};
+use hbvib::{Contact, Hooks, Model, Status, forced_residual, forced_response};
 use num_complex::Complex64;
 
 const N: usize = 36;
@@ -13,30 +12,18 @@ const HARMONICS: usize = 15;
 /// A chain fixed at both ends, each mass on the ground through a slider with a limit of its own; a contact between
 /// masses here and there.
 fn chain(beta: f64) -> Model {
-    let (mut m, mut k) = (vec![0.0; N * N], vec![0.0; N * N]);
-    for i in 0..N {
-        m[i * N + i] = 0.1 + 0.02 * (i as f64).cos();
-        k[i * N + i] = 2.0e3;
-        if i > 0 {
-            k[i * N + i - 1] = -1.0e3;
-            k[(i - 1) * N + i] = -1.0e3;
-        }
-    }
-    let mut model = Model::new(N).unwrap();
-    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(N, &m)).unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(N, &k))
-        .unwrap();
-    model.set_rayleigh(0.0, beta).unwrap();
-    for i in 0..N {
+    let mass: Vec<f64> = (0..N).map(|i| 0.1 + 0.02 * (i as f64).cos()).collect();
+    let slider = |i: usize| {
         let limit = 0.012 + 0.008 * (0.7 * i as f64).sin();
         let to = (i % 5 == 2).then_some((i + 3) % N);
-        model.add_contact(&Contact::jenkins(i, to, 40.0, limit, 1.0)).unwrap();
-    }
-    for (i, phase) in [(3, 0.0), (17, 0.4), (30, 1.1)] {
-        model.add_force(i, 1, Complex64::from_polar(0.15, phase)).unwrap();
-    }
-    model
+        Contact::jenkins(i, to, 40.0, limit, 1.0)
+    };
+    let forces = [(3, 0.0), (17, 0.4), (30, 1.1)];
+    models::chain(&mass, &[1.0e3; N + 1])
+        .rayleigh(0.0, beta)
+        .contacts((0..N).map(slider))
+        .forces(forces.map(|(i, phase)| (i, 1, Complex64::from_polar(0.15, phase))))
+        .build()
 }
 
 #[test]
@@ -44,19 +31,10 @@ fn points_solve_the_uncondensed_equations_and_both_directions_agree() {
     let lowest = 2.0 * (1e3_f64 / 0.1).sqrt() * (0.5 * std::f64::consts::PI / (N + 1) as f64).sin();
     for beta in [2e-3, 2e-4] {
         let model = chain(beta);
-        let options = SolverOptions {
-            harmonics: HARMONICS,
-            tolerance: 0.0,
-            response_dof: Some(17),
-            ..SolverOptions::default()
-        };
+        let options = at_dof(17, harmonics(HARMONICS));
         let mut peaks = Vec::new();
         for (start, stop) in [(0.95, 1.15), (1.15, 0.95)] {
-            let range = ForcedOptions {
-                omega_start: start * lowest,
-                omega_stop: stop * lowest,
-                ..ForcedOptions::default()
-            };
+            let range = omega_range(start * lowest, stop * lowest);
             let branch = forced_response(&model, &options, &range, &mut Hooks::default()).unwrap();
             assert_eq!(branch.status(), Status::Ok);
             assert!(branch.reduction().unknowns > 500, "solved by iteration");

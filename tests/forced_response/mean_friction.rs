@@ -1,40 +1,22 @@
 //! A body that hardly anything but friction holds: the mean of the friction turns it until its weak support balances that, at
 //! a distance of many vibrations. The balance is that of the truth: force of the support against the mean of the law's force.
 
+use crate::common::models::Structure;
 use crate::common::{all_harmonics, harmonics, solve_at};
-use hbvib::{Contact, MatrixKind, MatrixView, Model, contact_evaluate};
+use hbvib::{Contact, Model, contact_evaluate};
 use num_complex::Complex64;
 
 /// Two bodies that move along the contact and across it; the second has the support `hold` along it. The static load
 /// presses them together without a motion.
 fn driven(hold: f64, contact: &Contact) -> Model {
-    let diagonal = |x: [f64; 4]| {
-        let mut full = [0.0; 16];
-        for (i, x) in x.into_iter().enumerate() {
-            full[5 * i] = x;
-        }
-        full
-    };
-    let mut model = Model::new(4).unwrap();
-    for (kind, values) in [
-        (MatrixKind::Mass, [1.0, 1.0, 0.3, 0.3]),
-        (MatrixKind::Damping, [0.01, 0.01, 0.0, 0.01]),
-        (MatrixKind::Stiffness, [1.0, 1.2, hold, 2.0]),
-    ] {
-        model
-            .set_matrix(kind, &MatrixView::dense(4, &diagonal(values)))
-            .unwrap();
-    }
-    model.add_contact(contact).unwrap();
-    for (dof, harmonic, value) in [
-        (0, 1, Complex64::new(0.5, 0.0)),
-        (1, 1, Complex64::new(0.0, 0.3)),
-        (1, 0, Complex64::new(0.3, 0.0)),
-        (3, 0, Complex64::new(-0.3, 0.0)),
-    ] {
-        model.add_force(dof, harmonic, value).unwrap();
-    }
-    model
+    Structure::plain(4)
+        .diagonals([&[1.0, 1.0, 0.3, 0.3], &[0.01, 0.01, 0.0, 0.01], &[1.0, 1.2, hold, 2.0]])
+        .contact(contact)
+        .force(0, 1, 0.5)
+        .force(1, 1, Complex64::new(0.0, 0.3))
+        .force(1, 0, 0.3)
+        .force(3, 0, -0.3)
+        .build()
 }
 
 #[test]

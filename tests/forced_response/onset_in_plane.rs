@@ -1,25 +1,16 @@
 //! Sweeps over the onset of slip of a contact in the plane, where the circles that hold its slider at rest cease to meet. Its place goes
 //! with the root of the distance in the frequency there, so that the branch has a corner that it reaches along the surface of the event.
 
-use crate::common::harmonics;
-use hbvib::{Branch, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Status, forced_response};
+use crate::common::models::{dense, diagonal, tridiagonal};
+use crate::common::{harmonics, omega_range};
+use hbvib::{Branch, Contact, ForcedOptions, Hooks, Model, Status, forced_response};
 use num_complex::Complex64;
 
 /// A chain of six masses with springs to the ground and damping 0.01 M + 0.02 K.
 fn chain(mass: [f64; 6], stiffness: [f64; 6], between: [f64; 5]) -> Model {
-    let mut model = Model::new(6).unwrap();
-    let (mut m, mut k) = ([0.0; 36], [0.0; 36]);
-    for i in 0..6 {
-        (m[7 * i], k[7 * i]) = (mass[i], stiffness[i]);
-    }
-    for (i, spring) in between.into_iter().enumerate() {
-        (k[6 * i + i + 1], k[6 * i + 6 + i]) = (spring, spring);
-    }
-    for (kind, values) in [(MatrixKind::Mass, &m), (MatrixKind::Stiffness, &k)] {
-        model.set_matrix(kind, &MatrixView::dense(6, values)).unwrap();
-    }
-    model.set_rayleigh(0.01, 0.02).unwrap();
-    model
+    dense(&diagonal(&mass), &tridiagonal(&stiffness, &between))
+        .rayleigh(0.01, 0.02)
+        .build()
 }
 
 /// Two contacts under constant loads, with a static force.
@@ -61,10 +52,8 @@ fn model() -> Model {
 
 fn sweep(model: &Model, (omega_start, omega_stop): (f64, f64), at: &[f64]) -> Branch {
     let range = ForcedOptions {
-        omega_start,
-        omega_stop,
         at,
-        ..ForcedOptions::default()
+        ..omega_range(omega_start, omega_stop)
     };
     forced_response(model, &harmonics(5), &range, &mut Hooks::default()).unwrap()
 }

@@ -1,8 +1,9 @@
 //! Contacts pressed by static loads: the static solution first, then the vibration with the mean as an
 //! unknown. Against closed forms of the linear structure that contacts make when they stick and press.
 
-use crate::common::{all_harmonics, harmonics, solve_at};
-use hbvib::{Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Status, forced_response};
+use crate::common::models::Structure;
+use crate::common::{all_harmonics, harmonics, omega_range, solve_at};
+use hbvib::{Contact, Hooks, Model, Status, forced_response};
 use num_complex::Complex64;
 
 const KT: f64 = 2.0;
@@ -14,22 +15,13 @@ const STIFFNESS: [f64; 3] = [1.0, 0.7, 0.4];
 
 /// Masses moving along t1, t2 and n, the last without a spring where `free`.
 fn masses(free: bool) -> Model {
-    let diagonal = |x: [f64; 3]| [x[0], 0.0, 0.0, 0.0, x[1], 0.0, 0.0, 0.0, x[2]];
     let mut stiffness = STIFFNESS;
     if free {
         stiffness[2] = 0.0;
     }
-    let mut model = Model::new(3).unwrap();
-    for (kind, values) in [
-        (MatrixKind::Mass, [1.0; 3]),
-        (MatrixKind::Damping, [DAMPING; 3]),
-        (MatrixKind::Stiffness, stiffness),
-    ] {
-        model
-            .set_matrix(kind, &MatrixView::dense(3, &diagonal(values)))
-            .unwrap();
-    }
-    model
+    Structure::plain(3)
+        .diagonals([&[1.0; 3], &[DAMPING; 3], &stiffness])
+        .build()
 }
 
 /// Friction on the ground in one direction and in a plane, of the given load at rest.
@@ -119,11 +111,7 @@ fn a_body_pulled_off_its_contact_has_no_static_solution_and_an_error_says_so() {
     model.add_contact(&contacts(0.5)[0].0).unwrap();
     model.add_force(2, 0, 2.0.into()).unwrap();
     model.add_force(0, 1, 0.1.into()).unwrap();
-    let range = ForcedOptions {
-        omega_start: OMEGA,
-        omega_stop: OMEGA,
-        ..ForcedOptions::default()
-    };
+    let range = omega_range(OMEGA, OMEGA);
     let error = forced_response(&model, &harmonics(3), &range, &mut Hooks::default()).unwrap_err();
     println!("{error}");
     assert_eq!(error.status, Status::NoConvergence);

@@ -1,5 +1,7 @@
 //! A structure on a basis responds as by factors: random structures of every kind, and what forces other ways.
 
+use crate::common::models::{self, unit_chain};
+use crate::common::omega_range;
 use hbvib::{
     Branch, Contact, Flexibility, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Part, Phase, PhaseReport,
     SolverOptions, Spring, Status, forced_response,
@@ -188,20 +190,14 @@ fn structures(seed: u64) -> Vec<(&'static str, Model)> {
 
 fn options(flexibility: Flexibility, harmonics: usize) -> SolverOptions {
     SolverOptions {
-        tolerance: 0.0,
-        harmonics,
         flexibility,
         response_dof: Some(89),
-        ..SolverOptions::default()
+        ..crate::common::harmonics(harmonics)
     }
 }
 
 pub fn point(model: &Model, solver: &SolverOptions, omega: f64) -> Branch {
-    let range = ForcedOptions {
-        omega_start: omega,
-        omega_stop: omega,
-        ..ForcedOptions::default()
-    };
+    let range = omega_range(omega, omega);
     forced_response(model, solver, &range, &mut Hooks::default()).unwrap()
 }
 
@@ -287,11 +283,7 @@ fn stiffness_without_symmetry_has_no_basis() {
             .basis,
         0
     );
-    let range = ForcedOptions {
-        omega_start: 1.4,
-        omega_stop: 1.4,
-        ..ForcedOptions::default()
-    };
+    let range = omega_range(1.4, 1.4);
     let solver = options(Flexibility::Krylov, 3);
     let refused = forced_response(&model, &solver, &range, &mut Hooks::default()).unwrap_err();
     assert_eq!(refused.status, Status::Unsupported);
@@ -305,11 +297,7 @@ fn factorisations(model: &Model, solver: &SolverOptions, range: (f64, f64)) -> u
         count.set(count.get() + usize::from(report.phase == Phase::Factorisation));
         false
     };
-    let range = ForcedOptions {
-        omega_start: range.0,
-        omega_stop: range.1,
-        ..ForcedOptions::default()
-    };
+    let range = omega_range(range.0, range.1);
     let mut hooks = Hooks {
         phase: Some(&sink),
         ..Hooks::default()
@@ -362,11 +350,7 @@ fn threads_that_solve_one_model_find_the_same() {
 #[test]
 fn a_memory_limit_is_told_with_the_need_before_memory_is_asked_for() {
     let (_, model) = structures(2).swap_remove(0);
-    let range = ForcedOptions {
-        omega_start: 1.0,
-        omega_stop: 1.1,
-        ..ForcedOptions::default()
-    };
+    let range = omega_range(1.0, 1.1);
     for flexibility in [Flexibility::Krylov, Flexibility::Direct] {
         let solver = SolverOptions {
             memory_limit: 1000,
@@ -390,27 +374,12 @@ fn a_memory_limit_is_told_with_the_need_before_memory_is_asked_for() {
 /// A plate of masses between springs, clamped at its edges, with sliders against the ground.
 pub fn plate(side: usize, sliders: usize) -> Model {
     let n = side * side;
-    let (mut k, mut m) = (vec![0.0; n * n], vec![0.0; n * n]);
-    for i in 0..n {
-        (k[i * (n + 1)], m[i * (n + 1)]) = (4.0, 1.0);
-        for (step, has_next) in [(1, (i + 1) % side != 0), (side, i + side < n)] {
-            if has_next {
-                k[i * n + i + step] = -1.0;
-                k[(i + step) * n + i] = -1.0;
-            }
-        }
-    }
-    let mut model = Model::new(n).unwrap();
-    for (kind, values) in [(MatrixKind::Mass, &m), (MatrixKind::Stiffness, &k)] {
-        model.set_matrix(kind, &MatrixView::dense(n, values)).unwrap();
-    }
-    model.set_rayleigh(0.0, 0.02).unwrap();
-    for c in 0..sliders {
-        let at = c * (n - 1) / (sliders - 1);
-        model.add_contact(&Contact::jenkins(at, None, 0.2, 0.004, 1.0)).unwrap();
-    }
-    model.add_force(n / 3, 1, Complex64::ONE).unwrap();
-    model
+    let slider = |c: usize| Contact::jenkins(c * (n - 1) / (sliders - 1), None, 0.2, 0.004, 1.0);
+    models::plate(side)
+        .rayleigh(0.0, 0.02)
+        .contacts((0..sliders).map(slider))
+        .force(n / 3, 1, Complex64::ONE)
+        .build()
 }
 
 /// On both sides of the number of contacts up to which a basis is taken, 676/15, all points are those of factors.
@@ -420,10 +389,8 @@ fn plates_with_few_and_many_sliders_respond_as_by_factors() {
         let model = plate(26, sliders);
         let solve = |flexibility| {
             let range = ForcedOptions {
-                omega_start: 0.15,
-                omega_stop: 0.2,
                 at: &[0.163, 0.19],
-                ..ForcedOptions::default()
+                ..omega_range(0.15, 0.2)
             };
             let solver = options(flexibility, 1);
             forced_response(&model, &solver, &range, &mut Hooks::default()).unwrap()
@@ -452,30 +419,16 @@ fn plates_with_few_and_many_sliders_respond_as_by_factors() {
 #[test]
 fn a_chain_with_many_resonances_is_left_to_factors() {
     let n = 1200;
-    let (mut k, mut m) = (vec![0.0; n * n], vec![0.0; n * n]);
-    for i in 0..n {
-        (k[i * (n + 1)], m[i * (n + 1)]) = (2.0, 1.0);
-        if i > 0 {
-            k[i * n + i - 1] = -1.0;
-            k[(i - 1) * n + i] = -1.0;
-        }
-    }
-    let mut model = Model::new(n).unwrap();
-    for (kind, values) in [(MatrixKind::Mass, &m), (MatrixKind::Stiffness, &k)] {
-        model.set_matrix(kind, &MatrixView::dense(n, values)).unwrap();
-    }
-    model.set_rayleigh(0.0, 0.02).unwrap();
-    model
-        .add_contact(&Contact::jenkins(n / 2, None, 0.2, 0.004, 1.0))
-        .unwrap();
-    model.add_force(n / 3, 1, Complex64::ONE).unwrap();
+    let model = unit_chain(n)
+        .rayleigh(0.0, 0.02)
+        .slider(n / 2, 0.2, 0.004, 1.0)
+        .force(n / 3, 1, Complex64::ONE)
+        .build();
     for (from, on_basis) in [(0.004, true), (0.1, false), (0.5, false)] {
         let solve = |flexibility| {
             let range = ForcedOptions {
-                omega_start: from,
-                omega_stop: 1.01 * from,
                 at: &[1.004 * from],
-                ..ForcedOptions::default()
+                ..omega_range(from, 1.01 * from)
             };
             forced_response(&model, &options(flexibility, 3), &range, &mut Hooks::default()).unwrap()
         };
@@ -500,10 +453,8 @@ fn a_plate_with_many_resonances_responds_as_by_factors() {
     let (model, solver) = (plate(25, 3), options(Flexibility::Automatic, 9));
     let at = [0.163, 0.19];
     let range = ForcedOptions {
-        omega_start: 0.15,
-        omega_stop: 0.2,
         at: &at,
-        ..ForcedOptions::default()
+        ..omega_range(0.15, 0.2)
     };
     let branch = forced_response(&model, &solver, &range, &mut Hooks::default()).unwrap();
     assert_eq!(branch.status(), Status::Ok);

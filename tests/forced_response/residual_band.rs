@@ -1,12 +1,13 @@
 //! The band of a response: a wedge damper between a fixed platform and a blade, whose one contact sticks through the period and keeps any
 //! force within its limit. Reference rows are motions found by integration in time.
 
-use crate::common::{harmonics, solve_at, sweep};
+use crate::common::models::{Structure, dense};
+use crate::common::{harmonics, omega_range, solve_at, sweep};
 use hbvib::{
-    BandOf, BandOptions, Branch, Constant, Contact, ContactKind, FloquetOptions, Follow, ForcedOptions, Frame,
-    Friction2d, Friction3d, Hooks, LogLevel, MatrixKind, MatrixView, Model, MultiplierClass, Parameter, ParameterRange,
-    Quantity, SolverOptions, TimeOptions, VerifyOptions, band, band_curve, floquet, forced_response, freedom,
-    parameter_response, sensitivity, time_response, verify,
+    BandOf, BandOptions, Branch, Constant, Contact, ContactKind, FloquetOptions, Follow, Frame, Friction2d, Friction3d,
+    Hooks, LogLevel, MatrixKind, MatrixView, Model, MultiplierClass, Parameter, ParameterRange, Quantity,
+    SolverOptions, TimeOptions, VerifyOptions, band, band_curve, floquet, forced_response, freedom, parameter_response,
+    sensitivity, time_response, verify,
 };
 use num_complex::Complex64;
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -17,22 +18,12 @@ const BLADE: usize = 1;
 
 /// The structure: a blade q and a damper (u along, v outward), and as many motions across as are given.
 fn structure(force: f64, across: usize) -> Model {
-    let n = 3 + across;
-    let mut model = Model::new(n).unwrap();
-    for (which, blade, damper) in [
-        (MatrixKind::Mass, 1.0, 0.01),
-        (MatrixKind::Damping, 0.04, 0.004),
-        (MatrixKind::Stiffness, 1.0, 1e-3),
-    ] {
-        let mut full = vec![0.0; n * n];
-        for i in 0..n {
-            full[i * n + i] = if i == 0 { blade } else { damper };
-        }
-        model.set_matrix(which, &MatrixView::dense(n, &full)).unwrap();
-    }
-    model.add_force(2, 0, Complex64::new(1.0, 0.0)).unwrap();
-    model.add_force(0, 1, Complex64::new(force, 0.0)).unwrap();
-    model
+    let damper = |blade: f64, damper: f64| [vec![blade], vec![damper; 2 + across]].concat();
+    Structure::plain(3 + across)
+        .diagonals([&damper(1.0, 0.01), &damper(0.04, 0.004), &damper(1.0, 1e-3)])
+        .force(2, 0, 1.0)
+        .force(0, 1, force)
+        .build()
 }
 
 /// The damper in wedges of 45 degrees; friction coefficients of platform and blade.
@@ -623,11 +614,7 @@ fn a_point_without_band_costs_hardly_any_work() {
             cancelled: Some(&count),
             ..Hooks::default()
         };
-        let range = ForcedOptions {
-            omega_start: from,
-            omega_stop: to,
-            ..ForcedOptions::default()
-        };
+        let range = omega_range(from, to);
         let solver = harmonics(9);
         let branch = forced_response(&model, &solver, &range, &mut hooks).unwrap();
         let of_branch = asked.replace(0);
@@ -643,16 +630,9 @@ fn a_point_without_band_costs_hardly_any_work() {
 fn contacts_that_all_slip_or_all_stick_have_no_band() {
     // One Jenkins contact that slips, one that sticks and loads nothing that vibrates, and both stuck.
     for (force, preload) in [(0.3, [1.0, 1.0]), (0.3, [1.0, 50.0]), (1e-3, [1.0, 1.0])] {
-        let mut model = Model::new(2).unwrap();
-        for (which, d) in [
-            (MatrixKind::Mass, 1.0),
-            (MatrixKind::Damping, 0.05),
-            (MatrixKind::Stiffness, 1.0),
-        ] {
-            model
-                .set_matrix(which, &MatrixView::dense(2, &[d, 0.0, 0.0, d]))
-                .unwrap();
-        }
+        let mut model = dense(&[1.0, 0.0, 0.0, 1.0], &[1.0, 0.0, 0.0, 1.0])
+            .damping(&[0.05, 0.0, 0.0, 0.05])
+            .build();
         for (dof, load) in preload.into_iter().enumerate() {
             model.add_contact(&Contact::jenkins(dof, None, 1.0, 0.2, load)).unwrap();
         }
@@ -822,11 +802,7 @@ fn a_sweep_with_a_log_warns_of_its_band() {
             log: Some(&mut log),
             ..Hooks::default()
         };
-        let range = ForcedOptions {
-            omega_start: from,
-            omega_stop: to,
-            ..ForcedOptions::default()
-        };
+        let range = omega_range(from, to);
         let branch = forced_response(model, &harmonics(5), &range, &mut hooks).unwrap();
         (told, branch)
     };

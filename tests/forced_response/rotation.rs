@@ -2,6 +2,7 @@
 //! fixed or tied to the frequency. Against models with the same numbers in plain matrices, dense solutions, finite
 //! differences and integration in time.
 
+use crate::common::models::rotor;
 use crate::common::{BASE, Blisk, all_harmonics, data, harmonics, number, relative_gap, solve_at, sweep};
 use hbvib::internals::Condensed;
 use hbvib::internals::HarmonicBalance;
@@ -284,34 +285,13 @@ fn a_sweep_with_the_speed_tied_to_the_frequency_passes_the_solutions_of_each_spe
     }
 }
 
-/// Stodola's rotor: x, y, θy and −θx.
-fn rotor() -> Model {
-    let mut model = Model::new(4).unwrap();
-    let mass = [
-        1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0, 0.3,
-    ];
-    let (a, b, c) = (1.0, 0.4, 0.8);
-    let stiffness = [a, 0.0, b, 0.0, 0.0, a, 0.0, b, b, 0.0, c, 0.0, 0.0, b, 0.0, c];
-    // θy and −θx couple by the polar inertia.
-    let mut gyroscopic = [0.0; 16];
-    (gyroscopic[2 * 4 + 3], gyroscopic[3 * 4 + 2]) = (-0.5, 0.5);
-    for (which, a) in [
-        (MatrixKind::Mass, &mass),
-        (MatrixKind::Stiffness, &stiffness),
-        (MatrixKind::Gyroscopic, &gyroscopic),
-    ] {
-        model.set_matrix(which, &MatrixView::dense(4, a)).unwrap();
-    }
-    model
-}
-
 #[test]
 fn natural_frequencies_of_a_rotor_split_with_the_speed() {
     for (speed, known) in [
         (1.0, [0.693_911_507, 0.917_055_456, 1.246_325_060, 2.689_847_777]),
         (0.5, [0.785_810_218, 0.892_178_993, 1.418_378_826, 2.145_343_383]),
     ] {
-        let mut model = rotor();
+        let mut model = rotor().build();
         model.set_speed(Speed::Fixed(speed)).unwrap();
         let modes = model.linear_modes(0, ContactState::Free).unwrap();
         assert_eq!(modes.omega.len(), 4);
@@ -320,7 +300,7 @@ fn natural_frequencies_of_a_rotor_split_with_the_speed() {
         }
     }
     // At Ω = ω: one forward critical speed, and the two backward ones.
-    let mut model = rotor();
+    let mut model = rotor().build();
     model.set_speed(Speed::PerOmega(1.0)).unwrap();
     let modes = model.linear_modes(0, ContactState::Free).unwrap();
     let forward: Vec<f64> = modes
@@ -337,7 +317,7 @@ fn natural_frequencies_of_a_rotor_split_with_the_speed() {
 
 #[test]
 fn an_unbalance_whirls_forward_and_a_stop_bounds_it_as_in_time() {
-    let mut model = rotor();
+    let mut model = rotor().build();
     model.set_rayleigh(0.0, 0.03).unwrap();
     model.add_unbalance(0, 1, 0.1, 0.4).unwrap();
     model.set_speed(Speed::PerOmega(1.0)).unwrap();

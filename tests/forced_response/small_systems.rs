@@ -4,9 +4,9 @@
 //! (stored, from an independent harmonic balance) or a limit.
 
 use crate::common;
-use hbvib::{
-    Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Result, SolverOptions, Status, forced_response,
-};
+use crate::common::models::oscillator;
+use crate::common::omega_range;
+use hbvib::{Contact, Hooks, Model, Result, SolverOptions, Status, forced_response};
 use num_complex::Complex64;
 
 /// m = k = 1 with viscous damping c and a Jenkins contact to the ground.
@@ -26,16 +26,10 @@ const BASE: Oscillator = Oscillator {
 /// Harmonics 0 ..= H of a model of one degree of freedom at one frequency.
 fn solve(model: &Model, omega: f64, harmonics: usize, keep_even_harmonics: bool) -> Result<Vec<Complex64>> {
     let options = SolverOptions {
-        harmonics,
         keep_even_harmonics,
-        tolerance: 0.0,
-        ..SolverOptions::default()
+        ..crate::common::harmonics(harmonics)
     };
-    let range = ForcedOptions {
-        omega_start: omega,
-        omega_stop: omega,
-        ..ForcedOptions::default()
-    };
+    let range = omega_range(omega, omega);
     let branch = forced_response(model, &options, &range, &mut Hooks::default())?;
     assert_eq!(branch.status(), Status::Ok);
     let mut x = vec![Complex64::ZERO; (harmonics + 1) * model.ndof()];
@@ -45,22 +39,11 @@ fn solve(model: &Model, omega: f64, harmonics: usize, keep_even_harmonics: bool)
 
 impl Oscillator {
     fn model(self, forces: &[(usize, f64)]) -> Model {
-        let one = MatrixView::dense(1, &[1.0]);
-        let mut model = Model::new(1).unwrap();
-        model.set_matrix(MatrixKind::Mass, &one).unwrap();
-        model.set_matrix(MatrixKind::Stiffness, &one).unwrap();
-        model
-            .set_matrix(MatrixKind::Damping, &MatrixView::dense(1, &[self.c]))
-            .unwrap();
-        if self.kt > 0.0 {
-            model
-                .add_contact(&Contact::jenkins(0, None, self.kt, 1.0, self.limit))
-                .unwrap();
-        }
-        for &(harmonic, force) in forces {
-            model.add_force(0, harmonic, force.into()).unwrap();
-        }
-        model
+        oscillator(1.0, 1.0)
+            .damping(&[self.c])
+            .contacts((self.kt > 0.0).then(|| Contact::jenkins(0, None, self.kt, 1.0, self.limit)))
+            .forces(forces.iter().map(|&(harmonic, force)| (0, harmonic, force)))
+            .build()
     }
 
     fn answer(self, forces: &[(usize, f64)], omega: f64, harmonics: usize) -> Vec<Complex64> {

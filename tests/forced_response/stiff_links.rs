@@ -3,6 +3,8 @@
 //! factor η; and contacts that press and hardly vibrate.
 
 use crate::common::depth::some_of;
+use crate::common::models::dense;
+use crate::common::{at_dof, harmonics, omega_range};
 use hbvib::{
     Branch, Constant, Contact, Flexibility, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Part, SolverOptions,
     Status, Storage, Values, forced_response,
@@ -94,10 +96,8 @@ fn merged(n: usize) -> Complex64 {
 
 fn sweep(model: &Model, solver: &SolverOptions, range: (f64, f64), at: &[f64]) -> Branch {
     let range = ForcedOptions {
-        omega_start: range.0,
-        omega_stop: range.1,
         at,
-        ..ForcedOptions::default()
+        ..omega_range(range.0, range.1)
     };
     forced_response(model, solver, &range, &mut Hooks::default()).unwrap()
 }
@@ -131,16 +131,10 @@ fn a_penalty_is_a_rigid_link_at_every_size() {
 
 #[test]
 fn a_basis_that_rounding_spoils_is_refused_where_it_was_asked_for() {
-    let range = ForcedOptions {
-        omega_start: 0.4,
-        omega_stop: 0.5,
-        ..ForcedOptions::default()
-    };
+    let range = omega_range(0.4, 0.5);
     let solver = SolverOptions {
-        harmonics: 3,
-        tolerance: 0.0,
         flexibility: Flexibility::Krylov,
-        ..SolverOptions::default()
+        ..harmonics(3)
     };
     let refused = forced_response(&linked(700, 1e8), &solver, &range, &mut Hooks::default()).unwrap_err();
     assert_eq!(refused.status, Status::NoConvergence);
@@ -176,12 +170,7 @@ fn one_loss_in_a_complex_stiffness_is_the_loss_factor_at_every_size() {
             model.add_force(n / 2, 1, Complex64::new(0.8, 0.3)).unwrap();
             model
         });
-        let solver = SolverOptions {
-            harmonics: 3,
-            tolerance: 0.0,
-            response_dof: Some(n / 3),
-            ..SolverOptions::default()
-        };
+        let solver = at_dof(n / 3, harmonics(3));
         let at = [0.31, 0.4, 0.437, 0.5];
         let [complex, real] = models.each_ref().map(|model| sweep(model, &solver, (0.3, 0.5), &at));
         let ways = [&complex, &real].map(|branch| branch.reduction().flexibility_way);
@@ -207,19 +196,12 @@ fn pair(contact: &Contact, difference: f64) -> (Model, Complex64) {
             2.0, -1.0, -0.3, 0.0, -1.0, 2.0, 0.0, -0.3, -0.3, 0.0, 2.0, -1.0, 0.0, -0.3, -1.0, 2.0,
         ],
     );
-    let mut model = Model::new(4).unwrap();
-    for (kind, matrix) in [
-        (MatrixKind::Mass, DMatrix::identity(4, 4)),
-        (MatrixKind::Stiffness, stiffness.clone()),
-        (MatrixKind::Damping, 0.02 * &stiffness),
-    ] {
-        model
-            .set_matrix(kind, &MatrixView::dense(4, matrix.as_slice()))
-            .unwrap();
-    }
-    model.add_contact(contact).unwrap();
-    model.add_force(0, 1, Complex64::ONE).unwrap();
-    model.add_force(1, 1, (1.0 + difference).into()).unwrap();
+    let model = dense(DMatrix::identity(4, 4).as_slice(), stiffness.as_slice())
+        .damping((0.02 * &stiffness).as_slice())
+        .contact(contact)
+        .force(0, 1, Complex64::ONE)
+        .force(1, 1, 1.0 + difference)
+        .build();
     let omega = 0.5;
     let z = stiffness.map(|k| k * Complex64::new(1.0, 0.02 * omega))
         - DMatrix::identity(4, 4) * Complex64::from(omega * omega);
@@ -243,12 +225,7 @@ fn a_pressed_contact_whose_sides_move_alike_has_a_first_point() {
     });
     for (contact, difference) in cases {
         let (model, exact) = pair(&contact, difference);
-        let solver = SolverOptions {
-            harmonics: 3,
-            tolerance: 0.0,
-            response_dof: Some(0),
-            ..SolverOptions::default()
-        };
+        let solver = at_dof(0, harmonics(3));
         let found = sweep(&model, &solver, (0.5, 0.5), &[]).amplitude()[0];
         assert!(
             (found / exact.norm() - 1.0).abs() < 1e-8,

@@ -1,6 +1,7 @@
 //! Loss factor, structural matrix, complex symmetric stiffness and modal damping against closed forms: plain and
 //! cyclic, dense and sparse, with and without a contact.
 
+use crate::common::models::{Structure, dense, oscillator};
 use crate::common::{harmonics, solve_at, sweep};
 use hbvib::{
     Branch, ContactState, Hooks, MatrixKind, MatrixView, Model, Part, Status, Storage, TimeOptions, Values,
@@ -170,9 +171,7 @@ fn a_wheel_has_the_response_of_each_nodal_diameter() {
         for engine_order in [diameter, -diameter, 12 - diameter] {
             for by_diameters in [false, true] {
                 for form in [Form::LossFactor, Form::Matrix] {
-                    let mut model = Model::cyclic(1, sectors).unwrap();
-                    model.set_wave(engine_order);
-                    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(1, &[m])).unwrap();
+                    let mut model = Structure::cyclic(1, sectors).wave(engine_order).mass(&[m]).build();
                     let wave = |d: usize| own + 2.0 * coupling * (TAU * d as f64 / 12.0).cos();
                     let mut give = |which: MatrixKind, share: f64| {
                         if by_diameters {
@@ -210,12 +209,7 @@ fn a_wheel_has_the_response_of_each_nodal_diameter() {
 
 #[test]
 fn a_resonance_has_the_height_of_the_loss_factor_and_stays_in_place() {
-    let mut model = Model::new(1).unwrap();
-    for (which, a) in [(MatrixKind::Mass, 2.0), (MatrixKind::Stiffness, 50.0)] {
-        model.set_matrix(which, &MatrixView::dense(1, &[a])).unwrap();
-    }
-    model.set_loss_factor(0.02).unwrap();
-    model.add_force(0, 1, 3.0.into()).unwrap();
+    let model = oscillator(2.0, 50.0).loss_factor(0.02).force(0, 1, 3.0).build();
     let branch = sweep(&model, &harmonics(1), 4.0, 6.0, &[]);
     let [peak] = branch.peaks() else {
         panic!("{} peaks", branch.peaks().len());
@@ -239,10 +233,7 @@ fn modal_damping_damps_each_mode_by_its_ratio_and_no_other_motion() {
     let n = 6;
     let (m, k) = chain(n);
     let ratios = [0.01, 0.0, 0.03, 0.002];
-    let mut model = Model::new(n).unwrap();
-    for (which, a) in [(MatrixKind::Mass, &m), (MatrixKind::Stiffness, &k)] {
-        model.set_matrix(which, &MatrixView::dense(n, a.as_slice())).unwrap();
-    }
+    let mut model = dense(m.as_slice(), k.as_slice()).build();
     model.set_modal_damping(&ratios).unwrap();
     let force = DVector::from_fn(n, |i, _| Complex64::new(1.0 - 0.3 * i as f64, 0.2 * i as f64));
     for (dof, f) in force.iter().enumerate() {

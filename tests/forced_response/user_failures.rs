@@ -1,9 +1,10 @@
 //! Callbacks that fail within a solve: what can be tried again is, what cannot ends the branch with the
 //! points found, and no number that is not finite comes out.
 
+use crate::common::models::oscillator;
+use crate::common::{amplitude_range, harmonics, omega_range};
 use hbvib::{
-    Branch, Call, Contact, ContactKind, ForcedOptions, Hooks, MatrixKind, MatrixView, ModeOptions, Model, Result,
-    SolverOptions, Status, User, UserForce, forced_response, nonlinear_mode,
+    Branch, Call, Contact, ContactKind, Hooks, Model, Result, Status, User, UserForce, forced_response, nonlinear_mode,
 };
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -63,48 +64,23 @@ impl UserForce for Frail {
 }
 
 fn model(force: Arc<Frail>) -> Model {
-    let mut model = Model::new(1).unwrap();
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(1, &[1.0]))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(1, &[1.0]))
-        .unwrap();
-    model.add_force(0, 1, Complex64::new(0.2, 0.0)).unwrap();
     let law = User {
         odd: true,
         ..User::new(force, 1, 0).unwrap()
     };
     let contact = Contact::over(vec![0], ContactKind::User(law));
-    model.add_contact(&contact).unwrap();
-    model
+    oscillator(1.0, 1.0).force(0, 1, 0.2).contact(&contact).build()
 }
 
 fn respond(force: &Arc<Frail>) -> Result<Branch> {
-    let solver = SolverOptions {
-        harmonics: 3,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    };
-    let range = ForcedOptions {
-        omega_start: 0.5,
-        omega_stop: 2.0,
-        ..ForcedOptions::default()
-    };
+    let solver = harmonics(3);
+    let range = omega_range(0.5, 2.0);
     forced_response(&model(force.clone()), &solver, &range, &mut Hooks::default())
 }
 
 fn mode(force: &Arc<Frail>) -> Result<Branch> {
-    let solver = SolverOptions {
-        harmonics: 3,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    };
-    let range = ModeOptions {
-        log10_start: -2.0,
-        log10_stop: 0.0,
-        ..ModeOptions::default()
-    };
+    let solver = harmonics(3);
+    let range = amplitude_range(-2.0, 0.0);
     nonlinear_mode(&model(force.clone()), &solver, &range, &mut Hooks::default())
 }
 

@@ -1,9 +1,11 @@
 //! Forces of the caller inside the analyses: equal to the library's own laws, with states, with a force at
 //! rest, with wrong tangents.
 
+use crate::common::models::dense;
+use crate::common::{amplitude_range, at_dof, harmonics, omega_range};
 use hbvib::{
-    Branch, Call, Contact, ContactKind, ForcedOptions, Hooks, MatrixKind, MatrixView, ModeOptions, Model, Polynomial,
-    Result, SolverOptions, Status, Tangent, User, UserForce, check_jacobian, forced_response, nonlinear_mode,
+    Branch, Call, Contact, ContactKind, ForcedOptions, Hooks, ModeOptions, Model, Polynomial, Result, SolverOptions,
+    Status, Tangent, User, UserForce, check_jacobian, forced_response, nonlinear_mode,
 };
 use num_complex::Complex64;
 use std::f64::consts::PI;
@@ -11,14 +13,8 @@ use std::sync::Arc;
 
 /// Two masses on springs; the contact acts on the second.
 fn model(contact: &Contact, constant: f64) -> Model {
-    let mut model = Model::new(2).unwrap();
     let (m, k) = ([1.0, 0.0, 0.0, 0.5], [3.0, -1.0, -1.0, 2.0]);
-    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(2, &m)).unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(2, &k))
-        .unwrap();
-    model.set_rayleigh(0.02, 0.01).unwrap();
-    model.add_force(0, 1, Complex64::new(0.1, 0.0)).unwrap();
+    let mut model = dense(&m, &k).rayleigh(0.02, 0.01).force(0, 1, 0.1).build();
     if constant != 0.0 {
         model.add_force(1, 0, Complex64::new(constant, 0.0)).unwrap();
     }
@@ -30,15 +26,10 @@ const AT: [f64; 5] = [1.1, 1.4, 1.47, 1.6, 2.0];
 
 fn respond(model: &Model, solver: &SolverOptions) -> Result<Branch> {
     let range = ForcedOptions {
-        omega_start: 1.0,
-        omega_stop: 2.4,
         at: &AT,
-        ..ForcedOptions::default()
+        ..omega_range(1.0, 2.4)
     };
-    let solver = SolverOptions {
-        response_dof: Some(1),
-        ..*solver
-    };
+    let solver = at_dof(1, *solver);
     forced_response(model, &solver, &range, &mut Hooks::default())
 }
 
@@ -124,10 +115,8 @@ fn a_callback_that_is_a_polynomial_has_its_branch_and_its_mode() {
     assert_eq!(a.reduction(), b.reduction());
 
     let range = ModeOptions {
-        log10_start: -3.0,
-        log10_stop: 0.3,
         at: &[-2.0, -0.5, 0.0],
-        ..ModeOptions::default()
+        ..amplitude_range(-3.0, 0.3)
     };
     let [a, b] = [own, library].map(|m| nonlinear_mode(&m, &solver, &range, &mut Hooks::default()).unwrap());
     for i in 0..3 {
@@ -139,11 +128,7 @@ fn a_callback_that_is_a_polynomial_has_its_branch_and_its_mode() {
 
 #[test]
 fn a_mode_does_not_depend_on_the_unit_of_its_amplitude() {
-    let solver = SolverOptions {
-        harmonics: 5,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    };
+    let solver = harmonics(5);
     let frequencies = |log10: f64| {
         let force = Curved {
             unit: 10f64.powf(log10),
@@ -151,10 +136,8 @@ fn a_mode_does_not_depend_on_the_unit_of_its_amplitude() {
         };
         let at = [-1.0 + log10, 0.0 + log10];
         let range = ModeOptions {
-            log10_start: -2.0 + log10,
-            log10_stop: 0.3 + log10,
             at: &at,
-            ..ModeOptions::default()
+            ..amplitude_range(-2.0 + log10, 0.3 + log10)
         };
         let model = model(&over(curved(force, true)), 0.0);
         let branch = nonlinear_mode(&model, &solver, &range, &mut Hooks::default()).unwrap();
@@ -216,11 +199,7 @@ fn slider(samples: usize) -> User {
 #[test]
 fn a_slider_with_a_state_responds_like_the_librarys_own() {
     let library = model(&Contact::jenkins(1, None, 1.0, 0.05, 1.0), 0.0);
-    let solver = SolverOptions {
-        harmonics: 5,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    };
+    let solver = harmonics(5);
     let exact = respond(&library, &solver).unwrap();
     let mut errors = Vec::new();
     for samples in [128, 512, 2048] {
@@ -262,11 +241,7 @@ fn a_force_at_rest_is_a_constant_load() {
         static_force: 0.7,
         ..RIGHT
     };
-    let range = ModeOptions {
-        log10_start: -3.0,
-        log10_stop: 0.0,
-        ..ModeOptions::default()
-    };
+    let range = amplitude_range(-3.0, 0.0);
     // A mode counts from the static state under either load.
     let mode = |law: Curved, force: f64| {
         let mut own = model(&Contact::cubic(0, None, 0.0, 1.0), force);

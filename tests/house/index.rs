@@ -21,6 +21,9 @@ The tests are a package of their own, which is compiled with little optimisation
 private, so they are compiled with the sources of the library; the packages in [units](units) do that without optimisation:
 `cargo test --release -p hbvib-unit-tests`, and `-p hbvib-numerics-unit-tests` for the numerics.
 
+Models come from [common/models.rs](common/models.rs): an oscillator, chains, plates, a rotor, sectors and structures of any matrices, each
+built in one expression; options come from [common/options.rs](common/options.rs). A private builder is for what these cannot say.
+
 Beside the crates: [common](common) holds what they share, [data](data) reference values, [c_abi](c_abi) and
 [languages](languages) the programs in C, C++, Fortran and Python that `programs` builds and runs, and
 [stored_results](stored_results) a program that prints results to the last bit, to compare two builds. [ledger](ledger) changes each

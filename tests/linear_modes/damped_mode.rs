@@ -1,6 +1,7 @@
 //! Linear modes with the structure's damping, kept periodic by artificial damping: against closed
 //! forms and an independent solution.
 
+use crate::common::models::{self, Structure};
 use crate::common::modes::{assert_wave, chain_frequency, chains, gap, mass_product, sector, skewed};
 use crate::common::refusal::refused;
 use crate::common::{self, BASE, largest};
@@ -138,24 +139,11 @@ fn damped_modes_of_the_sector_agree_with_an_independent_solution() {
 
 /// Two masses, K and C given.
 fn two(stiffness: [f64; 4], damping: [f64; 4]) -> Model {
-    let mut model = Model::new(2).unwrap();
-    for (which, a) in [
-        (MatrixKind::Mass, [2.0, 0.3, 0.3, 1.0]),
-        (MatrixKind::Stiffness, stiffness),
-        (MatrixKind::Damping, damping),
-    ] {
-        model
-            .set_matrix(
-                which,
-                &MatrixView::dense(2, &a).part(if which == MatrixKind::Mass {
-                    Part::Full
-                } else {
-                    Part::General
-                }),
-            )
-            .unwrap();
-    }
-    model
+    Structure::plain(2)
+        .mass(&[2.0, 0.3, 0.3, 1.0])
+        .part(MatrixKind::Stiffness, &stiffness, Part::General)
+        .part(MatrixKind::Damping, &damping, Part::General)
+        .build()
 }
 
 #[test]
@@ -260,14 +248,9 @@ fn the_damped_wheel_keeps_the_wave_that_it_started_from() {
 #[test]
 fn a_pair_that_damping_parts_is_left_for_one_of_its_modes() {
     // Two equal oscillators, one of them damped: no mixture of them is a mode.
-    let mut model = Model::new(2).unwrap();
-    for (which, a) in [
-        (MatrixKind::Mass, [1.0, 0.0, 0.0, 1.0]),
-        (MatrixKind::Stiffness, [4.0, 0.0, 0.0, 4.0]),
-        (MatrixKind::Damping, [0.08, 0.0, 0.0, 0.02]),
-    ] {
-        model.set_matrix(which, &MatrixView::dense(2, &a)).unwrap();
-    }
+    let model = models::dense(&[1.0, 0.0, 0.0, 1.0], &[4.0, 0.0, 0.0, 4.0])
+        .damping(&[0.08, 0.0, 0.0, 0.02])
+        .build();
     let shape = [Complex64::ONE, Complex64::from(0.4)];
     let start = model.select_mode(ModeChoice::Shape(&shape)).unwrap();
     let mode = model.damped_mode(&start, DampingForm::Mass).unwrap();
@@ -283,14 +266,11 @@ fn a_pair_that_damping_parts_is_left_for_one_of_its_modes() {
 #[test]
 fn damped_modes_that_do_not_exist_are_refused() {
     // All stiffness in a spring: nothing for the stiffness type to act on.
-    let mut model = Model::new(1).unwrap();
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(1, &[1.0]))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Damping, &MatrixView::dense(1, &[0.1]))
-        .unwrap();
-    model.add_contact(&Contact::jenkins(0, None, 4.0, 0.5, 1.0)).unwrap();
+    let model = Structure::plain(1)
+        .mass(&[1.0])
+        .damping(&[0.1])
+        .slider(0, 4.0, 0.5, 1.0)
+        .build();
     let start = model.select_mode(ModeChoice::Index(0)).unwrap();
     assert!((model.damped_mode(&start, DampingForm::Mass).unwrap().damping - 0.025).abs() < 1e-14);
     refused(

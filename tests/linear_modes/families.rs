@@ -1,21 +1,11 @@
 //! Natural modes of structures with a family of close frequencies far from zero: equal blades in a ring, a chain on springs.
 
-use hbvib::{ContactState, MatrixKind, MatrixView, Model};
+use crate::common::models::{dense, diagonal};
+use hbvib::{ContactState, Model};
 use std::f64::consts::PI;
 
 fn plain(n: usize, stiffness: &[f64]) -> Model {
-    let mut model = Model::new(n).unwrap();
-    let mut mass = vec![0.0; n * n];
-    for i in 0..n {
-        mass[i * (n + 1)] = 1.0;
-    }
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, stiffness))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &mass))
-        .unwrap();
-    model
+    dense(&diagonal(&vec![1.0; n]), stiffness).build()
 }
 
 /// The first natural frequencies against those in closed form, which may come in pairs.

@@ -1,8 +1,8 @@
 //! Damped modes and responses of structures that nothing holds, of every size: their rigid motion is no vibration, whatever rounding
 //! makes of its two eigenvalues zero.
 
-use crate::common::{all_harmonics, sweep};
-use hbvib::{Contact, Hooks, LinearContacts, MatrixKind, MatrixView, Model, SolverOptions, Speed, damped_modes};
+use crate::common::{all_harmonics, harmonics, sweep};
+use hbvib::{Contact, Hooks, LinearContacts, MatrixKind, MatrixView, Model, Speed, damped_modes};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use std::f64::consts::PI;
@@ -108,11 +108,7 @@ fn a_free_body_under_gyroscopic_forces_has_a_response() {
             .add_contact(&Contact::jenkins(3, Some(n - 7), KT, 0.3, 1e9))
             .unwrap();
         model.add_force(10, 1, Complex64::ONE).unwrap();
-        let solver = SolverOptions {
-            harmonics: 1,
-            tolerance: 0.0,
-            ..SolverOptions::default()
-        };
+        let solver = harmonics(1);
         let branch = sweep(&model, &solver, 1.3, 8.0, &[]);
         let order = 2 * n;
         let [mass, stiffness, skew] = matrices(n, Some(1.0));

@@ -1,6 +1,7 @@
 //! Damped modes and the Campbell diagram: Stodola's rotor, eigenvalues of the first-order system by a dense solver,
 //! the sense of whirl, crossings with engine orders.
 
+use crate::common::models::{oscillator, rotor};
 use crate::common::refusal::refused;
 use crate::common::{BASE, Blisk, SECTORS};
 use hbvib::{
@@ -21,33 +22,6 @@ fn matrices(model: &mut Model, n: usize, all: &[(MatrixKind, &[f64])]) {
     }
 }
 
-/// x, y, θy and −θx.
-fn rotor() -> Model {
-    let mut model = Model::new(4).unwrap();
-    let mut gyroscopic = [0.0; 16];
-    (gyroscopic[2 * 4 + 3], gyroscopic[3 * 4 + 2]) = (-0.5, 0.5);
-    matrices(
-        &mut model,
-        4,
-        &[
-            (
-                MatrixKind::Mass,
-                &[
-                    1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0, 0.3,
-                ],
-            ),
-            (
-                MatrixKind::Stiffness,
-                &[
-                    1.0, 0.0, 0.4, 0.0, 0.0, 1.0, 0.0, 0.4, 0.4, 0.0, 0.8, 0.0, 0.0, 0.4, 0.0, 0.8,
-                ],
-            ),
-            (MatrixKind::Gyroscopic, &gyroscopic),
-        ],
-    );
-    model
-}
-
 fn modes(model: &Model, diameter: i64, count: usize) -> DampedModes {
     damped_modes(model, diameter, LinearContacts::Stuck, count, &mut Hooks::default()).unwrap()
 }
@@ -61,7 +35,7 @@ fn diagram(model: &Model, speeds: &[f64], count: usize, orders: &[i64]) -> Campb
 fn stodolas_rotor_has_its_frequencies_and_its_sense_of_whirl() {
     for (speed, known) in STODOLA {
         for sense in [1.0, -1.0] {
-            let mut model = rotor();
+            let mut model = rotor().build();
             model.set_speed(Speed::Fixed(sense * speed)).unwrap();
             let found = modes(&model, 0, 4);
             for (k, known) in known.iter().enumerate() {
@@ -77,7 +51,7 @@ fn stodolas_rotor_has_its_frequencies_and_its_sense_of_whirl() {
         }
     }
     // At rest the modes come in pairs, whose whirl has no sense.
-    let found = modes(&rotor(), 0, 4);
+    let found = modes(&rotor().build(), 0, 4);
     assert_eq!(found.direction, [0; 4]);
     assert!((found.omega(0) - found.omega(1)).abs() < 1e-12);
     // The shapes of a pair are independent.
@@ -94,7 +68,7 @@ fn stodolas_rotor_has_its_frequencies_and_its_sense_of_whirl() {
 #[test]
 fn engine_orders_meet_the_modes_at_the_critical_speeds() {
     let speeds: Vec<f64> = (0..=15).map(|i| 0.1 + 0.1 * f64::from(i)).collect();
-    let found = diagram(&rotor(), &speeds, 4, &[1, 2]);
+    let found = diagram(&rotor().build(), &speeds, 4, &[1, 2]);
     assert_eq!(found.omega.len(), speeds.len() * 4);
     let at_half = &found.omega[4 * 4..5 * 4];
     for (omega, known) in at_half.iter().zip(STODOLA[1].1) {
@@ -110,7 +84,7 @@ fn engine_orders_meet_the_modes_at_the_critical_speeds() {
     };
     assert!((one.speed - 0.913_522_580_993_896_5).abs() < 1e-12, "{}", one.speed);
     for crossing in &found.crossings {
-        let mut model = rotor();
+        let mut model = rotor().build();
         model.set_speed(Speed::Fixed(crossing.speed)).unwrap();
         let at = crossing.engine_order as f64 * crossing.speed;
         assert!((crossing.omega / at - 1.0).abs() < 1e-12);
@@ -278,7 +252,7 @@ fn a_wheel_without_rotation_has_the_modes_of_each_diameter() {
 
 #[test]
 fn a_mode_that_grows_is_told_and_bad_input_is_refused() {
-    let mut model = rotor();
+    let mut model = rotor().build();
     let mut damping = [0.0; 16];
     damping[0] = -0.01;
     model
@@ -321,13 +295,9 @@ fn a_mode_that_grows_is_told_and_bad_input_is_refused() {
 #[test]
 fn contacts_about_the_static_state_follow_the_load_at_each_speed() {
     // A mass on a spring of 1 with a stop of stiffness 3 beside it, pressed by 1 − Ω²/2: the stop opens at √2.
-    let mut model = Model::new(1).unwrap();
-    for (kind, value) in [(MatrixKind::Mass, 1.0), (MatrixKind::Stiffness, 1.0)] {
-        model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
-    }
-    model
-        .add_contact(&Contact::unilateral(Some(0), None, 3.0, 0.0))
-        .unwrap();
+    let model = oscillator(1.0, 1.0)
+        .contact(Contact::unilateral(Some(0), None, 3.0, 0.0))
+        .build();
     let frequency = |speed: f64, force: f64| {
         let mut at = model.try_clone().unwrap();
         at.set_preload_at_speed(0, 1.0, -0.5).unwrap();
@@ -355,12 +325,8 @@ fn contacts_about_the_static_state_follow_the_load_at_each_speed() {
 #[test]
 fn a_frequency_that_jumps_over_an_engine_order_is_no_crossing() {
     // ω = 2 with the stop closed, up to Ω = √2, then 1: EO 1 is passed by the jump, EO 2 met at Ω = 1.
-    let mut model = Model::new(1).unwrap();
-    for (kind, value) in [(MatrixKind::Mass, 1.0), (MatrixKind::Stiffness, 1.0)] {
-        model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
-    }
     let stop = Contact::unilateral(Some(0), None, 3.0, 0.0);
-    model.add_contact(&stop).unwrap();
+    let mut model = oscillator(1.0, 1.0).contact(&stop).build();
     model.set_preload_at_speed(0, 1.0, -0.5).unwrap();
     let speeds: Vec<f64> = (0..7).map(|i| 0.1 + 0.3 * f64::from(i)).collect();
     let found = campbell(
@@ -416,7 +382,7 @@ fn a_mode_that_ceases_to_oscillate_is_crossed_where_it_does_oscillate() {
 
 #[test]
 fn modes_that_grow_with_the_speed_are_told_once() {
-    let mut model = rotor();
+    let mut model = rotor().build();
     let mut damping = [0.0; 16];
     damping[0] = -0.01;
     matrices(&mut model, 4, &[(MatrixKind::Damping, &damping)]);

@@ -1,9 +1,11 @@
 //! Crossings of Campbell diagrams in the sense that an engine order excites, and the whirl of modes that gyroscopic forces do
 //! not touch.
 
+use crate::common::models::{Structure, dense};
+use crate::common::{amplitude_range, harmonics};
 use hbvib::{
     AeroForm, Branch, Campbell, Contact, ContactState, Hooks, LinearContacts, LogLevel, MatrixKind, MatrixView,
-    ModeOptions, Model, SolverOptions, Speed, campbell, damped_modes, nonlinear_mode,
+    ModeOptions, Model, Speed, campbell, damped_modes, nonlinear_mode,
 };
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -17,20 +19,13 @@ const STIFFNESS: [f64; 4] = [1500.0, 0.0, 0.0, 1900.0];
 const COUPLING: [f64; 4] = [-200.0, -250.0, 250.0, -350.0];
 
 fn wheel() -> Model {
-    let mut model = Model::cyclic(2, SECTORS).unwrap();
-    // Columns of [[0, −2], [2, 0]].
-    for (kind, values) in [
-        (MatrixKind::Mass, [1.0, 0.0, 0.0, 1.0]),
-        (MatrixKind::Stiffness, STIFFNESS),
-        (MatrixKind::Gyroscopic, [0.0, 2.0, -2.0, 0.0]),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(2, &values)).unwrap();
-    }
-    // Columns of [[−200, 250], [−250, −350]].
-    model
-        .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(2, &COUPLING))
-        .unwrap();
-    model
+    // Columns of [[0, −2], [2, 0]] and of [[−200, 250], [−250, −350]].
+    Structure::cyclic(2, SECTORS)
+        .mass(&[1.0, 0.0, 0.0, 1.0])
+        .stiffness(&STIFFNESS)
+        .set(MatrixKind::Gyroscopic, &[0.0, 2.0, -2.0, 0.0])
+        .next(MatrixKind::Stiffness, &COUPLING)
+        .build()
 }
 
 /// ω² of the wave by the closed form of two degrees of freedom: (k₁ − ω²)(k₂ − ω²) − |k₁₂ − 2iωΩ|² = 0 has the roots ω > 0 of
@@ -108,17 +103,11 @@ fn a_speed_tied_to_the_frequency_and_nonlinear_modes_have_the_sense_of_the_wave(
     let mut model = wheel();
     model.set_speed(Speed::Fixed(5.0)).unwrap();
     model.add_contact(&Contact::jenkins(0, None, 100.0, 0.3, 50.0)).unwrap();
-    let solver = SolverOptions {
-        harmonics: 3,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    };
+    let solver = harmonics(3);
     for diameter in [1, -1, 9, -3, 5] {
         let range = ModeOptions {
             diameter: Some(diameter),
-            log10_start: -3.0,
-            log10_stop: -2.0,
-            ..ModeOptions::default()
+            ..amplitude_range(-3.0, -2.0)
         };
         let branch = nonlinear_mode(&model, &solver, &range, &mut Hooks::default()).unwrap();
         let linear = model.linear_modes(diameter, ContactState::Stuck).unwrap();
@@ -237,18 +226,13 @@ fn axial_and_torsional_modes_have_no_whirl() {
         let mut next = |low: f64, high: f64| low + (high - low) * 0.5 * (random.next() + 1.0);
         let (jd, jp) = (next(0.2, 0.5), next(0.1, 0.9));
         let (lateral, axial, m) = (next(500.0, 3000.0), next(500.0, 3000.0), next(500.0, 3000.0));
-        let mut model = Model::new(3).unwrap();
         let stiffness = [lateral, 0.0, 0.0, 0.0, lateral, 0.0, 0.0, 0.0, axial];
         let damping = stiffness.map(|k| if trial % 2 == 0 { 0.0 } else { 1e-4 * k });
-        for (kind, values) in [
-            (MatrixKind::Mass, [jd, 0.0, 0.0, 0.0, jd, 0.0, 0.0, 0.0, m]),
-            (MatrixKind::Stiffness, stiffness),
-            (MatrixKind::Damping, damping),
-            (MatrixKind::Gyroscopic, [0.0, -jp, 0.0, jp, 0.0, 0.0, 0.0, 0.0, 0.0]),
-        ] {
-            model.set_matrix(kind, &MatrixView::dense(3, &values)).unwrap();
-        }
-        model.set_speed(Speed::Fixed(next(0.5, 50.0))).unwrap();
+        let model = dense(&[jd, 0.0, 0.0, 0.0, jd, 0.0, 0.0, 0.0, m], &stiffness)
+            .damping(&damping)
+            .set(MatrixKind::Gyroscopic, &[0.0, -jp, 0.0, jp, 0.0, 0.0, 0.0, 0.0, 0.0])
+            .speed(Speed::Fixed(next(0.5, 50.0)))
+            .build();
         let found = damped_modes(&model, 0, LinearContacts::Free, 3, &mut Hooks::default()).unwrap();
         let own = (axial / m).sqrt();
         let distance = |k: &usize| (found.omega(*k) - own).abs();
@@ -293,17 +277,12 @@ fn a_torsional_chain_beside_a_disk_has_no_whirl_and_neither_have_its_crossings()
     assert!((0..4).any(|k| (found.omega(k) / first - 1.0).abs() < 1e-12 && found.direction[k] == 0));
 
     // A disk with an axial mode: EO 1 meets the backward whirl at √(900/0.8), the axial mode at √2600.
-    let mut model = Model::new(3).unwrap();
-    for (kind, values) in [
-        (MatrixKind::Mass, [0.3, 0.0, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 1.0]),
-        (
-            MatrixKind::Stiffness,
-            [900.0, 0.0, 0.0, 0.0, 900.0, 0.0, 0.0, 0.0, 2600.0],
-        ),
-        (MatrixKind::Gyroscopic, [0.0, -0.5, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0]),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(3, &values)).unwrap();
-    }
+    let model = dense(
+        &[0.3, 0.0, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 1.0],
+        &[900.0, 0.0, 0.0, 0.0, 900.0, 0.0, 0.0, 0.0, 2600.0],
+    )
+    .set(MatrixKind::Gyroscopic, &[0.0, -0.5, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0])
+    .build();
     let speeds: Vec<f64> = (0..25).map(|i| 5.0 * f64::from(i)).collect();
     let diagram = campbell(
         &model,

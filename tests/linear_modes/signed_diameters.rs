@@ -2,6 +2,8 @@
 //! random sectors with gyroscopic and aerodynamic forces, general damping and unsymmetric couplings. Every eigenvalue of the
 //! wheel is found, each once.
 
+use crate::common::models::Structure;
+use crate::common::random;
 use crate::rotating_modes::first_order;
 use hbvib::{
     AeroForm, Contact, ContactState, Hooks, Interference, LinearContacts, MatrixKind, MatrixView, Model, Part, Speed,
@@ -20,11 +22,7 @@ pub struct Random(pub u64);
 
 impl Random {
     pub fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        random::signed(&mut self.0)
     }
 
     fn below(&mut self, n: usize) -> usize {
@@ -428,17 +426,12 @@ fn undamped_modes_of_both_senses_are_those_of_the_rotating_wheel() {
 
 /// The sector of the book whose flow drives the waves of one sense, with 24 sectors.
 fn fluttering(after: f64, before: f64) -> Model {
-    let mut model = Model::cyclic(1, 24).unwrap();
-    for (kind, value) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Stiffness, 1.0),
-        (MatrixKind::Damping, 0.005),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
-    }
-    model
-        .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(1, &[-0.1]))
-        .unwrap();
+    let mut model = Structure::cyclic(1, 24)
+        .mass(&[1.0])
+        .stiffness(&[1.0])
+        .damping(&[0.005])
+        .next(MatrixKind::Stiffness, &[-0.1])
+        .build();
     let coefficients = [after.into(), before.into()];
     model
         .set_aero(&[0], &coefficients, &[1, -1], AeroForm::Displacement)

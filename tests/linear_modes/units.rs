@@ -1,9 +1,9 @@
 //! Modes do not depend on the units of single degrees of freedom, as radians beside micrometres: x = S x′ with S diagonal makes SMS and
 //! SKS, the same frequencies, and the shapes S⁻¹φ.
 
-use hbvib::{
-    Contact, ContactState, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, forced_response,
-};
+use crate::common::models::dense;
+use crate::common::{at_dof, harmonics, omega_range};
+use hbvib::{Contact, ContactState, Hooks, Model, forced_response};
 
 const STIFFNESS: [[f64; 3]; 3] = [[2.0, -1.0, 0.0], [-1.0, 3.0, -1.0], [0.0, -1.0, 1.5]];
 const MASS: [f64; 3] = [1.0, 0.8, 1.2];
@@ -11,7 +11,6 @@ const MASS: [f64; 3] = [1.0, 0.8, 1.2];
 /// The chain with its last motion in another unit.
 fn chain(unit: f64) -> Model {
     let units = [1.0, 1.0, unit];
-    let mut model = Model::new(3).unwrap();
     let (mut k, mut m) = ([0.0; 9], [0.0; 9]);
     for i in 0..3 {
         m[4 * i] = MASS[i] * units[i] * units[i];
@@ -19,11 +18,7 @@ fn chain(unit: f64) -> Model {
             k[3 * j + i] = STIFFNESS[i][j] * units[i] * units[j];
         }
     }
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(3, &k))
-        .unwrap();
-    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(3, &m)).unwrap();
-    model
+    dense(&m, &k).build()
 }
 
 #[test]
@@ -56,17 +51,8 @@ fn modal_damping_is_that_in_any_unit() {
         model.set_modal_damping(&[0.02]).unwrap();
         model.add_contact(&Contact::jenkins(0, None, 0.4, 0.3, 1.0)).unwrap();
         model.add_force(1, 1, 0.1.into()).unwrap();
-        let range = ForcedOptions {
-            omega_start: 0.8,
-            omega_stop: 1.0,
-            ..ForcedOptions::default()
-        };
-        let solver = SolverOptions {
-            harmonics: 3,
-            tolerance: 0.0,
-            response_dof: Some(0),
-            ..SolverOptions::default()
-        };
+        let range = omega_range(0.8, 1.0);
+        let solver = at_dof(0, harmonics(3));
         let branch = forced_response(&model, &solver, &range, &mut Hooks::default()).unwrap();
         branch.peaks().iter().map(|peak| peak.amplitude).fold(0.0, f64::max)
     };

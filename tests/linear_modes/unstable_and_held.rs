@@ -1,6 +1,7 @@
 //! Natural modes of stiffnesses that no structure has: a motion of negative stiffness is told by a frequency below zero, in as
 //! many places as Sturm's sequence counts, and degrees of freedom under a penalty of 1e36 are fixed ones.
 
+use crate::common::{at_dof, omega_range};
 use hbvib::{
     Contact, ContactState, ForcedOptions, Hooks, LinearContacts, MatrixKind, MatrixView, Model, Part, SolverOptions,
     Speed, Status, Storage, Values, damped_modes, forced_response,
@@ -250,15 +251,10 @@ fn a_response_with_friction_beside_a_penalty_is_that_of_fixed_rows() {
             model.add_contact(&contact).unwrap();
             model.add_force(last, 1, 0.4.into()).unwrap();
             let range = ForcedOptions {
-                omega_start: 0.8 * stuck,
-                omega_stop: 1.3 * stuck,
                 at: &[0.9 * stuck, stuck, 1.1 * stuck],
-                ..ForcedOptions::default()
+                ..omega_range(0.8 * stuck, 1.3 * stuck)
             };
-            let options = SolverOptions {
-                response_dof: Some(last),
-                ..SolverOptions::default()
-            };
+            let options = at_dof(last, SolverOptions::default());
             let branch = forced_response(&model, &options, &range, &mut Hooks::default()).unwrap();
             assert_eq!(branch.status(), Status::Ok, "{n}");
             let at = (0..3).flat_map(|i| branch.at(i).to_vec());

@@ -1,26 +1,18 @@
 //! Two equal masses that nothing couples have two modes of one frequency, and nonlinear modes in any phase to each other: solutions
 //! lie in a continuum. Each mass then vibrates as it would alone, whose mode is an isolated one.
 
-use crate::common::harmonics;
 use crate::common::mode_cases::{follow, only};
-use hbvib::{Contact, MatrixKind, MatrixView, ModeChoice, ModeOptions, Model, SolverOptions};
+use crate::common::models::{dense, diagonal};
+use crate::common::{amplitude_range, harmonics};
+use hbvib::{Contact, ModeChoice, ModeOptions, Model, SolverOptions};
 use num_complex::Complex64;
 
 /// Masses on springs of their own; those behind the first `sliders` have a spring more in place of their slider.
 fn masses(n: usize, sliders: usize, (k, kt, limit): (f64, f64, f64)) -> Model {
-    let mut model = Model::new(n).unwrap();
-    let (mut mass, mut stiffness) = (vec![0.0; n * n], vec![0.0; n * n]);
-    for i in 0..n {
-        mass[i * n + i] = 1.0;
-        stiffness[i * n + i] = if i < sliders { k } else { k + kt };
-    }
-    for (kind, values) in [(MatrixKind::Mass, mass), (MatrixKind::Stiffness, stiffness)] {
-        model.set_matrix(kind, &MatrixView::dense(n, &values)).unwrap();
-    }
-    for i in 0..sliders {
-        model.add_contact(&Contact::jenkins(i, None, kt, 1.0, limit)).unwrap();
-    }
-    model
+    let springs: Vec<f64> = (0..n).map(|i| if i < sliders { k } else { k + kt }).collect();
+    dense(&diagonal(&vec![1.0; n]), &diagonal(&springs))
+        .contacts((0..sliders).map(|i| Contact::jenkins(i, None, kt, 1.0, limit)))
+        .build()
 }
 
 /// Amplitudes asked for, over that at which a mass alone begins to slip.
@@ -40,10 +32,8 @@ fn mode(
     let at = TIMES.map(|t| (t * onset * factor).log10());
     let range = ModeOptions {
         choice: shape.map_or(ModeChoice::Index(0), ModeChoice::Shape),
-        log10_start: (0.1 * onset * factor).log10(),
-        log10_stop: (6.0 * onset * factor).log10(),
         at: &at,
-        ..ModeOptions::default()
+        ..amplitude_range((0.1 * onset * factor).log10(), (6.0 * onset * factor).log10())
     };
     let branch = follow(model, solver, &range);
     (0..at.len())

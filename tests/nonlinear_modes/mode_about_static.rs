@@ -2,8 +2,9 @@
 //! its constant forces and the force that does the work of the artificial damping answers with the mode itself.
 
 use crate::common::mode_cases::{N, Skewed, damping, follow, harmonic, only};
+use crate::common::models::{dense, oscillator};
 use crate::common::refusal::refused;
-use crate::common::{self, Wheel, all_harmonics, harmonics, phase, relative_gap};
+use crate::common::{self, Wheel, all_harmonics, amplitude_range, harmonics, omega_range, phase, relative_gap};
 use hbvib::internals::linear_modes;
 use hbvib::{
     Branch, Constant, Contact, ForcedOptions, Hooks, Interrupt, LinearContacts, MatrixKind, MatrixView, ModeChoice,
@@ -41,13 +42,8 @@ pub fn answer(
         }
     }
     let range = ForcedOptions {
-        omega_start: omega,
-        omega_stop: omega,
-        at: &[],
         guess: Some(guess),
-        responses: &[],
-        together: false,
-        ..ForcedOptions::default()
+        ..omega_range(omega, omega)
     };
     let answer = forced_response(&model, solver, &range, &mut Hooks::default()).unwrap();
     assert_eq!(answer.status(), Status::Ok);
@@ -58,17 +54,10 @@ pub fn answer(
 pub fn pressed(contacts: &[Contact], constant: [f64; 3]) -> Model {
     const STIFFNESS: [f64; 9] = [2.0, -0.4, 0.3, -0.4, 3.0, -0.5, 0.3, -0.5, 2.5];
     const MASS: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.4, 0.0, 0.0, 0.0, 0.8];
-    let mut model = Model::new(3).unwrap();
-    for (kind, values) in [(MatrixKind::Mass, MASS), (MatrixKind::Stiffness, STIFFNESS)] {
-        model.set_matrix(kind, &MatrixView::dense(3, &values)).unwrap();
-    }
-    for contact in contacts {
-        model.add_contact(contact).unwrap();
-    }
-    for (dof, f) in constant.into_iter().enumerate() {
-        model.add_force(dof, 0, f.into()).unwrap();
-    }
-    model
+    dense(&MASS, &STIFFNESS)
+        .contacts(contacts)
+        .forces(constant.into_iter().enumerate().map(|(dof, f)| (dof, 0, f)))
+        .build()
 }
 
 pub fn mass_of_three(_: usize) -> DMatrix<Complex64> {
@@ -126,9 +115,7 @@ fn a_pressed_structure_under_its_balancing_force_answers_with_the_mode() {
         for h in [1, 3, 8] {
             let range = ModeOptions {
                 choice: ModeChoice::Index(index),
-                log10_start: -2.0,
-                log10_stop: 0.8,
-                ..ModeOptions::default()
+                ..amplitude_range(-2.0, 0.8)
             };
             let branch = follow(&model, &harmonics(h), &range);
             let (gap, compared) = worst(&model, &harmonics(h), &branch);
@@ -154,20 +141,12 @@ fn a_small_vibration_about_a_large_static_motion_is_linear_and_has_a_known_error
                 k[(i - 1) * n + i] = -1.0;
             }
         }
-        let mut model = Model::new(n).unwrap();
-        for (kind, values) in [(MatrixKind::Mass, &m), (MatrixKind::Stiffness, &k)] {
-            model.set_matrix(kind, &MatrixView::dense(n, values)).unwrap();
-        }
-        model.set_rayleigh(0.003, 0.002).unwrap();
         let at = [Some(n / 2), Some(n / 2 + 1)];
-        model
-            .add_contact(&Contact::friction_2d(at, [None; 2], (0.3, 0.3), 0.3, preload))
-            .unwrap();
-        let range = ModeOptions {
-            log10_start: -3.0,
-            log10_stop: -1.0,
-            ..ModeOptions::default()
-        };
+        let model = dense(&m, &k)
+            .rayleigh(0.003, 0.002)
+            .contact(Contact::friction_2d(at, [None; 2], (0.3, 0.3), 0.3, preload))
+            .build();
+        let range = amplitude_range(-3.0, -1.0);
         let mode = nonlinear_mode(&model, &SolverOptions::default(), &range, &mut Hooks::default()).unwrap();
         assert_eq!(mode.status(), Status::Ok, "{n}, {preload}");
         let linear = mode.omega()[0];
@@ -204,11 +183,7 @@ fn a_pressed_sector_vibrates_as_the_wheel_does_about_the_mean_of_diameter_0() {
         let mut model = skewed.model(false);
         model.add_force(0, 0, 0.3.into()).unwrap();
         model.add_force(2, 0, (-0.2).into()).unwrap();
-        let range = ModeOptions {
-            log10_start: -1.5,
-            log10_stop: 1.0,
-            ..ModeOptions::default()
-        };
+        let range = amplitude_range(-1.5, 1.0);
         let solver = harmonics(5);
         let branch = follow(&model, &solver, &range);
         let wheel = wheel_of(&skewed, 5);
@@ -264,24 +239,16 @@ fn wheel_of(skewed: &Skewed, sectors: usize) -> Wheel {
 
 /// Two masses that gyroscopic forces couple, the first pressed to a stop.
 fn whirling(speed: Speed) -> Model {
-    let mut model = Model::new(2).unwrap();
-    for (kind, values) in [
-        (MatrixKind::Mass, [1.0, 0.0, 0.0, 1.3]),
-        (MatrixKind::Stiffness, [2.0, 0.3, 0.3, 3.0]),
-        (MatrixKind::Gyroscopic, [0.0, 0.6, -0.6, 0.0]),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(2, &values)).unwrap();
-    }
-    model
-        .add_contact(
-            &Contact::unilateral(Some(0), None, 1.5, 0.0)
+    dense(&[1.0, 0.0, 0.0, 1.3], &[2.0, 0.3, 0.3, 3.0])
+        .set(MatrixKind::Gyroscopic, &[0.0, 0.6, -0.6, 0.0])
+        .contact(
+            Contact::unilateral(Some(0), None, 1.5, 0.0)
                 .with(Constant::Preload, 0.4)
                 .unwrap(),
         )
-        .unwrap();
-    model.add_force(1, 0, 0.2.into()).unwrap();
-    model.set_speed(speed).unwrap();
-    model
+        .force(1, 0, 0.2)
+        .speed(speed)
+        .build()
 }
 
 #[test]
@@ -290,11 +257,9 @@ fn gyroscopic_forces_at_a_tied_speed_leave_the_static_state_alone() {
     let at = [-1.5, -0.5, 0.0, 0.3];
     let mode = |model: &Model, at: &[f64]| {
         let range = ModeOptions {
-            log10_start: -2.0,
-            log10_stop: 0.5,
             at,
             reference_dof: Some(0),
-            ..ModeOptions::default()
+            ..amplitude_range(-2.0, 0.5)
         };
         follow(model, &harmonics(7), &range)
     };
@@ -330,11 +295,7 @@ fn a_static_state_that_changes_with_a_tied_speed_is_refused_by_the_analysis_that
     for change in changed {
         let mut model = whirling(Speed::PerOmega(0.5));
         change(&mut model);
-        let range = ModeOptions {
-            log10_start: -2.0,
-            log10_stop: 0.5,
-            ..ModeOptions::default()
-        };
+        let range = amplitude_range(-2.0, 0.5);
         let mode = nonlinear_mode(&model, &harmonics(3), &range, &mut Hooks::default());
         refused(mode, Status::Unsupported, &[&words[..], &["a nonlinear mode"]].concat());
         let linear = linear_modes(&model, 0, LinearContacts::Static, 1, &Interrupt::none());
@@ -348,17 +309,8 @@ fn a_static_state_that_changes_with_a_tied_speed_is_refused_by_the_analysis_that
 fn the_onset_of_slip_counts_from_the_load_that_the_contact_carries_at_rest() {
     // m = k = kt = 1: a constant force of 0.2 leaves 0.1 in the contact, whose limit is 0.3. It slips when the amplitude
     // exceeds (0.3 − 0.1)/kt = 0.2; then it sticks again about a lower load, until the range 2a kt exceeds 2 · 0.3.
-    let mut model = Model::new(1).unwrap();
-    for kind in [MatrixKind::Mass, MatrixKind::Stiffness] {
-        model.set_matrix(kind, &MatrixView::dense(1, &[1.0])).unwrap();
-    }
-    model.add_contact(&Contact::jenkins(0, None, 1.0, 0.3, 1.0)).unwrap();
-    model.add_force(0, 0, 0.2.into()).unwrap();
-    let range = ModeOptions {
-        log10_start: -2.0,
-        log10_stop: 0.5,
-        ..ModeOptions::default()
-    };
+    let model = oscillator(1.0, 1.0).slider(0, 1.0, 0.3, 1.0).force(0, 0, 0.2).build();
+    let range = amplitude_range(-2.0, 0.5);
     let branch = follow(&model, &harmonics(5), &range);
     let mode = branch.mode().unwrap();
     let (linear_up_to, slip_from) = (mode.linear_up_to, mode.slip_from);
@@ -377,11 +329,7 @@ fn a_mode_about_a_static_state_starts_from_a_guess() {
         ("stop", stop, 7),
     ] {
         let model = pressed(&[contact], [0.1, 0.2, 0.0]);
-        let range = ModeOptions {
-            log10_start: -2.0,
-            log10_stop: 0.8,
-            ..ModeOptions::default()
-        };
+        let range = amplitude_range(-2.0, 0.8);
         let whole = follow(&model, &harmonics(h), &range);
         let from = whole.points() / 2;
         let motion = all_harmonics(&whole, from);

@@ -1,7 +1,7 @@
 //! Power balance and scaling of nonlinear modes: exact statements about the equations at every H.
 
 use crate::common::mode_cases::{Skewed, WaveMatrices, blisk_matrices, damped, damping, delta, follow, harmonic, only};
-use crate::common::{self, BASE, Blisk, all_harmonics, harmonics};
+use crate::common::{self, BASE, Blisk, all_harmonics, amplitude_range, harmonics};
 use hbvib::{Amplitude, Branch, DampingForm, ModeChoice, ModeField, ModeOptions, Model};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
@@ -54,10 +54,8 @@ fn the_damping_ratio_is_the_loss_over_the_energy_at_every_point_of_the_blisk() {
         for beta in [0.0, common::BETA] {
             for h in [1, 3, 9] {
                 let range = ModeOptions {
-                    log10_start: delta(&BASE).log10() + 1.0,
-                    log10_stop: delta(&BASE).log10() + 6.0,
                     damping_form: form,
-                    ..ModeOptions::default()
+                    ..amplitude_range(delta(&BASE).log10() + 1.0, delta(&BASE).log10() + 6.0)
                 };
                 let branch = follow(&damped(&BASE, beta), &harmonics(h), &range);
                 let worst = balance(&branch, form, |h| blisk_matrices(&BASE, beta, h));
@@ -75,10 +73,8 @@ fn the_damping_ratio_is_the_loss_over_the_energy_with_contacts_across_sectors() 
             let skewed = Skewed::new(5);
             let range = ModeOptions {
                 choice: ModeChoice::Index(1),
-                log10_start: -2.0,
-                log10_stop: 3.0,
                 damping_form: form,
-                ..ModeOptions::default()
+                ..amplitude_range(-2.0, 3.0)
             };
             let branch = follow(&skewed.model(with_damping), &harmonics(5), &range);
             let worst = balance(&branch, form, |h| WaveMatrices {
@@ -97,11 +93,9 @@ fn run(model: &Model, delta: f64, extra: f64, form: DampingForm) -> Branch {
         .map(|k| delta.log10() + extra + 1.5 + 0.22 * f64::from(k))
         .collect();
     let range = ModeOptions {
-        log10_start: delta.log10() + extra + 1.0,
-        log10_stop: delta.log10() + extra + 6.0,
         at: &at,
         damping_form: form,
-        ..ModeOptions::default()
+        ..amplitude_range(delta.log10() + extra + 1.0, delta.log10() + extra + 6.0)
     };
     follow(model, &harmonics(7), &range)
 }
@@ -174,10 +168,8 @@ fn either_amplitude_measures_the_same_branch() {
         .collect();
     let range = ModeOptions {
         amplitude: Amplitude::Contact(0),
-        log10_start: slip[0] - 0.1,
-        log10_stop: slip[19] + 0.1,
         at: &slip,
-        ..ModeOptions::default()
+        ..amplitude_range(slip[0] - 0.1, slip[19] + 0.1)
     };
     let by_contact = follow(&model, &harmonics(7), &range);
     let worst = differences(&by_mode, &by_contact, 1.0, 1.0);

@@ -1,51 +1,25 @@
 //! The band of damping ratio and frequency of a nonlinear mode at an amplitude: a wedge damper, whose contact with the platform sticks.
 //! Its least damping is that of the linear structure with stuck contacts, from its eigenvalues; no state that is placed lies outside.
 
-use crate::common::harmonics;
+use crate::common::models::{Structure, damper_face, oscillator};
+use crate::common::{amplitude_range, harmonics};
 use hbvib::{
-    Contact, Frame, Hooks, LinearContacts, MatrixKind, MatrixView, ModeBandOf, ModeOptions, Model, SolverOptions,
-    damped_modes, mode_band, nonlinear_mode,
+    Hooks, LinearContacts, ModeBandOf, ModeOptions, Model, SolverOptions, damped_modes, mode_band, nonlinear_mode,
 };
-use num_complex::Complex64;
-use std::f64::consts::FRAC_1_SQRT_2;
 
 /// The wedge damper, its contact with the platform as equal parts.
 fn wedge(parts: usize) -> Model {
-    let mut model = Model::new(3).unwrap();
-    for (which, blade, damper) in [
-        (MatrixKind::Mass, 1.0, 0.01),
-        (MatrixKind::Damping, 0.04, 0.004),
-        (MatrixKind::Stiffness, 1.0, 1e-3),
-    ] {
-        let full = [blade, 0.0, 0.0, 0.0, damper, 0.0, 0.0, 0.0, damper];
-        model.set_matrix(which, &MatrixView::dense(3, &full)).unwrap();
-    }
-    let r = FRAC_1_SQRT_2;
-    let face = |normal, tangent, blade, mu, share| Contact {
-        dof_a: [Some(1), Some(2), None],
-        dof_b: [blade, None, None],
-        frame: Some(Frame::new(normal, Some(tangent)).unwrap()),
-        ..Contact::friction_2d([None; 2], [None; 2], (share, 1.5 * share), mu, 0.0)
-    };
-    model
-        .add_contact(&face([-r, -r, 0.0], [-r, r, 0.0], Some(0), 0.15, 1.0))
-        .unwrap();
-    for _ in 0..parts {
-        let share = 1.0 / parts as f64;
-        model
-            .add_contact(&face([r, -r, 0.0], [r, r, 0.0], None, 0.6, share))
-            .unwrap();
-    }
-    model.add_force(2, 0, Complex64::new(1.0, 0.0)).unwrap();
-    model
+    let share = 1.0 / parts as f64;
+    Structure::plain(3)
+        .diagonals([&[1.0, 0.01, 0.01], &[0.04, 0.004, 0.004], &[1.0, 1e-3, 1e-3]])
+        .contact(damper_face([1, 2], -1.0, Some(0), [1.0, 1.5, 0.15]))
+        .contacts(vec![damper_face([1, 2], 1.0, None, [share, 1.5 * share, 0.6]); parts])
+        .force(2, 0, 1.0)
+        .build()
 }
 
 fn range(amplitude: f64) -> ModeOptions<'static> {
-    ModeOptions {
-        log10_start: amplitude.log10(),
-        log10_stop: amplitude.log10() + 0.05,
-        ..ModeOptions::default()
-    }
+    amplitude_range(amplitude.log10(), amplitude.log10() + 0.05)
 }
 
 /// Frequency and damping ratio of the mode at an amplitude with sliders at places.
@@ -128,15 +102,7 @@ fn two_contacts_that_share_a_face_have_the_band_of_the_mode_with_one() {
 
 #[test]
 fn a_mode_without_a_slider_that_sticks_has_no_band() {
-    let mut model = Model::new(1).unwrap();
-    for (which, value) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Damping, 0.02),
-        (MatrixKind::Stiffness, 1.0),
-    ] {
-        model.set_matrix(which, &MatrixView::dense(1, &[value])).unwrap();
-    }
-    model.add_contact(&Contact::jenkins(0, None, 1.0, 0.3, 1.0)).unwrap();
+    let model = oscillator(1.0, 1.0).damping(&[0.02]).slider(0, 1.0, 0.3, 1.0).build();
     let mode = nonlinear_mode(&model, &harmonics(3), &range(2.0), &mut Hooks::default()).unwrap();
     let of = |point, contacts: &[usize]| {
         let hooks = &mut Hooks::default();

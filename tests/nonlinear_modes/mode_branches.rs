@@ -1,9 +1,10 @@
 //! Curves that branch off from nonlinear modes, against closed forms.
 
-use crate::common::{all_harmonics, harmonics};
+use crate::common::models::{dense, oscillator};
+use crate::common::{all_harmonics, amplitude_range, harmonics};
 use hbvib::{
-    BifurcationKind, Branch, Contact, ContactKind, Hooks, MatrixKind, MatrixView, ModeChoice, ModeGuess, ModeOptions,
-    Model, Polynomial, nonlinear_mode,
+    BifurcationKind, Branch, Contact, ContactKind, Hooks, ModeChoice, ModeGuess, ModeOptions, Model, Polynomial,
+    nonlinear_mode,
 };
 use num_complex::Complex64;
 
@@ -12,13 +13,7 @@ const COUPLING: f64 = 0.1;
 /// Two masses on springs of 1 + x², coupled by a weak spring.
 fn pair() -> Model {
     let own = 1.0 + COUPLING;
-    let mut model = Model::new(2).unwrap();
-    for (kind, values) in [
-        (MatrixKind::Mass, [1.0, 0.0, 0.0, 1.0]),
-        (MatrixKind::Stiffness, [own, -COUPLING, -COUPLING, own]),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(2, &values)).unwrap();
-    }
+    let mut model = dense(&[1.0, 0.0, 0.0, 1.0], &[own, -COUPLING, -COUPLING, own]).build();
     for dof in [0, 1] {
         model.add_contact(&Contact::cubic(dof, None, 0.0, 1.0)).unwrap();
     }
@@ -29,11 +24,9 @@ fn pair() -> Model {
 fn tree(model: &Model, index: usize, highest: usize, at: &[f64]) -> Branch {
     let range = ModeOptions {
         choice: ModeChoice::Index(index),
-        log10_start: -2.0,
-        log10_stop: 1.0,
         at,
         branches: 1,
-        ..ModeOptions::default()
+        ..amplitude_range(-2.0, 1.0)
     };
     nonlinear_mode(model, &harmonics(highest), &range, &mut Hooks::default()).unwrap()
 }
@@ -106,9 +99,7 @@ fn a_mode_without_branch_points_has_no_children() {
     assert_eq!(mode.searched().map(|searched| searched.bifurcations), Some(0));
     let range = ModeOptions {
         choice: ModeChoice::Index(1),
-        log10_start: -2.0,
-        log10_stop: 1.0,
-        ..ModeOptions::default()
+        ..amplitude_range(-2.0, 1.0)
     };
     let plain = nonlinear_mode(&pair(), &harmonics(5), &range, &mut Hooks::default()).unwrap();
     assert!(plain.bifurcations().unwrap().is_empty() && plain.searched().is_none());
@@ -122,27 +113,20 @@ fn a_mode_without_branch_points_has_no_children() {
 fn a_guess_is_taken_beside_polynomial_springs() {
     let models = [0, 1].map(|kind| {
         let spring = Polynomial::scalar(&[0.0, 0.0, 1.0], &[]).unwrap();
-        let mut model = Model::new(1).unwrap();
-        for matrix in [MatrixKind::Mass, MatrixKind::Stiffness] {
-            model.set_matrix(matrix, &MatrixView::dense(1, &[1.0])).unwrap();
-        }
         let contacts = [
             Contact::cubic(0, None, 0.0, 1.0),
             Contact::between(0, None, ContactKind::Polynomial(spring)),
         ];
-        model.add_contact(&contacts[kind]).unwrap();
-        model
+        oscillator(1.0, 1.0).contact(&contacts[kind]).build()
     });
     let motion = [Complex64::ZERO, 1.0.into()];
     let range = ModeOptions {
-        log10_start: 0.0,
-        log10_stop: 0.5,
         guess: Some(ModeGuess {
             motion: &motion,
             omega: 1.3,
             damping_ratio: 0.0,
         }),
-        ..ModeOptions::default()
+        ..amplitude_range(0.0, 0.5)
     };
     let [cubic, polynomial] =
         models.map(|model| nonlinear_mode(&model, &harmonics(7), &range, &mut Hooks::default()).unwrap());

@@ -5,7 +5,7 @@
 use crate::common::mode_cases::{
     blisk_matrices, damped, delta, disk_minus_ring, follow, harmonic, only, singular_at, spring,
 };
-use crate::common::{self, BASE, Blisk, D, R, data, harmonics, number};
+use crate::common::{self, BASE, Blisk, D, R, amplitude_range, data, harmonics, number};
 use hbvib::{Amplitude, ContactState, DampingForm, ModeOptions};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
@@ -140,10 +140,8 @@ fn damping_times_amplitude_tends_to_the_closed_form_of_the_sliding_contact() {
     let at = [4.0, 5.0, 6.0].map(|log: f64| delta.log10() + log);
     for h in [1, 3, 9] {
         let range = ModeOptions {
-            log10_start: delta.log10() + 2.0,
-            log10_stop: at[2],
             at: &at,
-            ..ModeOptions::default()
+            ..amplitude_range(delta.log10() + 2.0, at[2])
         };
         let branch = follow(&damped(&BASE, 0.0), &harmonics(h), &range);
         let errors: Vec<(f64, f64)> = (0..3)

@@ -1,26 +1,15 @@
 //! Nonlinear modes of conservative systems: masses on cubic springs against elliptic integrals and
 //! against time integration.
 
-use crate::common::{data, harmonics, number};
-use hbvib::{
-    Branch, Contact, Hooks, MatrixKind, MatrixView, ModeChoice, ModeGuess, ModeOptions, Model, SolverOptions, Status,
-    nonlinear_mode,
-};
+use crate::common::models::dense;
+use crate::common::{amplitude_range, data, harmonics, number};
+use hbvib::{Branch, Contact, Hooks, ModeChoice, ModeGuess, ModeOptions, Model, SolverOptions, Status, nonlinear_mode};
 use num_complex::Complex64;
 
 fn follow(model: &Model, solver: &SolverOptions, range: &ModeOptions) -> Branch {
     let branch = nonlinear_mode(model, solver, range, &mut Hooks::default()).unwrap();
     assert_eq!(branch.status(), Status::Ok);
     branch
-}
-
-fn dense(n: usize, mass: &[f64], stiffness: &[f64]) -> Model {
-    let mut model = Model::new(n).unwrap();
-    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(n, mass)).unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, stiffness))
-        .unwrap();
-    model
 }
 
 fn all_harmonics(branch: &Branch, point: usize) -> Vec<Complex64> {
@@ -34,16 +23,14 @@ fn all_harmonics(branch: &Branch, point: usize) -> Vec<Complex64> {
 fn the_duffing_backbone_converges_to_the_elliptic_integrals() {
     let reference = data("duffing.json");
     let points = reference["cases"][0]["points"].as_array().unwrap();
-    let mut model = dense(1, &[1.0], &[1.0]);
+    let mut model = dense(&[1.0], &[1.0]).build();
     model.add_contact(&Contact::cubic(0, None, 0.0, 1.0)).unwrap();
     let at: Vec<f64> = points.iter().map(|p| number(&p["X_odd"]["1"]).log10()).collect();
     let mut errors = Vec::new();
     for h in [1, 3, 5, 7, 9, 15, 31] {
         let range = ModeOptions {
-            log10_start: -3.0,
-            log10_stop: 1.5,
             at: &at,
-            ..ModeOptions::default()
+            ..amplitude_range(-3.0, 1.5)
         };
         let branch = follow(&model, &harmonics(h), &range);
         let mut worst = 0.0_f64;
@@ -90,7 +77,7 @@ fn both_modes_of_a_symmetric_pair_are_duffing_oscillators() {
     // In phase ω₀² = k and γ = c; out of phase ω₀² = k + 2κ and γ = c + 8·(coupling's γ): all are 1.
     for (index, k, coupling, c, c_coupling) in [(0, 1.0, 0.7, 1.0, 0.3), (1, 0.4, 0.3, 0.2, 0.1)] {
         let own = k + coupling;
-        let mut model = dense(2, &[1.0, 0.0, 0.0, 1.0], &[own, -coupling, -coupling, own]);
+        let mut model = dense(&[1.0, 0.0, 0.0, 1.0], &[own, -coupling, -coupling, own]).build();
         for dof in [0, 1] {
             model.add_contact(&Contact::cubic(dof, None, 0.0, c)).unwrap();
         }
@@ -101,10 +88,8 @@ fn both_modes_of_a_symmetric_pair_are_duffing_oscillators() {
             .collect();
         let range = ModeOptions {
             choice: ModeChoice::Index(index),
-            log10_start: -3.0,
-            log10_stop: 1.5,
             at: &at,
-            ..ModeOptions::default()
+            ..amplitude_range(-3.0, 1.5)
         };
         let branch = follow(&model, &harmonics(31), &range);
         for (i, p) in points.iter().enumerate() {
@@ -153,13 +138,9 @@ fn gap_after_a_period(branch: &Branch, point: usize, omega: f64) -> f64 {
 /// takes over until the fundamental is gone.
 #[test]
 fn an_internal_resonance_is_followed_round_its_fold() {
-    let mut model = dense(2, &[1.0, 0.0, 0.0, 1.0], &[2.0, -1.0, -1.0, 2.0]);
+    let mut model = dense(&[1.0, 0.0, 0.0, 1.0], &[2.0, -1.0, -1.0, 2.0]).build();
     model.add_contact(&Contact::cubic(0, None, 0.0, 0.5)).unwrap();
-    let range = ModeOptions {
-        log10_start: -2.0,
-        log10_stop: 3.0,
-        ..ModeOptions::default()
-    };
+    let range = amplitude_range(-2.0, 3.0);
     let branch = nonlinear_mode(&model, &harmonics(63), &range, &mut Hooks::default()).unwrap();
     assert_eq!(branch.status(), Status::StoppedLeftRange);
     assert_eq!(branch.folds().len(), 1);
@@ -178,13 +159,9 @@ fn an_internal_resonance_is_followed_round_its_fold() {
 /// mass moves nearly alone at a = 100, and the first follows it by the balance of one harmonic, ¾·0.5 x³ + (2 − ω²) x = a.
 #[test]
 fn the_curve_above_the_tongue_is_reached_by_a_guess() {
-    let mut model = dense(2, &[1.0, 0.0, 0.0, 1.0], &[2.0, -1.0, -1.0, 2.0]);
+    let mut model = dense(&[1.0, 0.0, 0.0, 1.0], &[2.0, -1.0, -1.0, 2.0]).build();
     model.add_contact(&Contact::cubic(0, None, 0.0, 0.5)).unwrap();
-    let below = ModeOptions {
-        log10_start: -2.0,
-        log10_stop: 3.0,
-        ..ModeOptions::default()
-    };
+    let below = amplitude_range(-2.0, 3.0);
     let lower = nonlinear_mode(&model, &harmonics(15), &below, &mut Hooks::default()).unwrap();
     let amplitude = |branch: &Branch, point: usize| branch.mode_at(point).unwrap().log10_amplitude;
     let largest = (0..lower.points())
@@ -193,14 +170,12 @@ fn the_curve_above_the_tongue_is_reached_by_a_guess() {
     let mut motion = vec![Complex64::new(0.0, 0.0); 2 * 2];
     (motion[2], motion[3]) = (6.0.into(), 100.0.into());
     let above = ModeOptions {
-        log10_start: 2.0,
-        log10_stop: 3.0,
         guess: Some(ModeGuess {
             omega: 1.39,
             motion: &motion,
             damping_ratio: 0.0,
         }),
-        ..ModeOptions::default()
+        ..amplitude_range(2.0, 3.0)
     };
     let upper = nonlinear_mode(&model, &harmonics(63), &above, &mut Hooks::default()).unwrap();
     println!(
@@ -220,15 +195,13 @@ fn the_curve_above_the_tongue_is_reached_by_a_guess() {
 /// up. A broken symmetry of the lower curve, a 2:1 resonance, is found on the way.
 #[test]
 fn the_curve_above_the_tongue_is_reached_by_switching() {
-    let mut model = dense(2, &[1.0, 0.0, 0.0, 1.0], &[2.0, -1.0, -1.0, 2.0]);
+    let mut model = dense(&[1.0, 0.0, 0.0, 1.0], &[2.0, -1.0, -1.0, 2.0]).build();
     model.add_contact(&Contact::cubic(0, None, 0.0, 0.5)).unwrap();
     let range = ModeOptions {
-        log10_start: 0.0,
-        log10_stop: 2.2,
         at: &[2.0],
         branches: 1,
         branch_depth: 1,
-        ..ModeOptions::default()
+        ..amplitude_range(0.0, 2.2)
     };
     let lower = nonlinear_mode(&model, &harmonics(31), &range, &mut Hooks::default()).unwrap();
     let order = |branch: &Branch| branch.descent().unwrap().internal_resonance;
@@ -277,13 +250,11 @@ fn the_curve_above_the_tongue_is_reached_by_switching() {
 /// The other mode stiffens without bound, and is the truth at every amplitude as well.
 #[test]
 fn a_mode_that_is_no_similar_one_is_an_orbit_of_the_equations() {
-    let mut model = dense(2, &[1.0, 0.0, 0.0, 1.0], &[2.0, -1.0, -1.0, 2.0]);
+    let mut model = dense(&[1.0, 0.0, 0.0, 1.0], &[2.0, -1.0, -1.0, 2.0]).build();
     model.add_contact(&Contact::cubic(0, None, 0.0, 0.5)).unwrap();
     let range = ModeOptions {
         choice: ModeChoice::Near(1.7),
-        log10_start: -3.0,
-        log10_stop: 2.0,
-        ..ModeOptions::default()
+        ..amplitude_range(-3.0, 2.0)
     };
     let mut last = f64::INFINITY;
     for h in [3, 9, 31] {

@@ -1,10 +1,11 @@
 //! The free decay of a lightly damped structure, pressed and rubbing, integrated in time by other code, against its
 //! nonlinear mode: the frequency and the loss per cycle at each amplitude.
 
-use crate::common::all_harmonics;
 use crate::common::harmonics;
 use crate::common::mode_cases::{damping, follow};
-use hbvib::{Contact, MatrixKind, MatrixView, ModeOptions, Model, SolverOptions};
+use crate::common::models::dense;
+use crate::common::{all_harmonics, amplitude_range};
+use hbvib::{Contact, Model, SolverOptions};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -22,16 +23,11 @@ const STEPS: f64 = 1500.0;
 const CYCLES: usize = 4;
 
 fn model() -> Model {
-    let mut model = Model::new(2).unwrap();
-    for (kind, values) in [(MatrixKind::Mass, [1.0, 0.0, 0.0, 1.0]), (MatrixKind::Stiffness, K)] {
-        model.set_matrix(kind, &MatrixView::dense(2, &values)).unwrap();
-    }
     let contact = Contact::friction_2d([Some(0), Some(1)], [None; 2], (KT, KN), MU, PRELOAD);
-    model.add_contact(&contact).unwrap();
-    for (dof, f) in CONSTANT.into_iter().enumerate() {
-        model.add_force(dof, 0, f.into()).unwrap();
-    }
-    model
+    dense(&[1.0, 0.0, 0.0, 1.0], &K)
+        .contact(&contact)
+        .forces(CONSTANT.into_iter().enumerate().map(|(dof, f)| (dof, 0, f)))
+        .build()
 }
 
 /// Place, velocity and slider.
@@ -111,11 +107,7 @@ fn at_phase(x: &[Complex64], dof: usize, tau: f64) -> (f64, f64) {
 
 #[test]
 fn a_free_decay_about_the_static_state_has_frequency_and_damping_of_the_mode() {
-    let range = ModeOptions {
-        log10_start: -1.0,
-        log10_stop: 1.4,
-        ..ModeOptions::default()
-    };
+    let range = amplitude_range(-1.0, 1.4);
     let solver = SolverOptions {
         step_max: 0.005,
         ..harmonics(15)

@@ -1,7 +1,9 @@
 //! Nonlinear modes with damping of few directions beside αM + βK: beside a second structure that is not connected, which brings the model
 //! above the sizes at which the flexibility is made in other ways, a mode is the one of its own structure alone.
 
-use hbvib::{Contact, DampingForm, Hooks, MatrixKind, MatrixView, ModeOptions, Model, SolverOptions, nonlinear_mode};
+use crate::common::models::dense;
+use crate::common::{amplitude_range, harmonics};
+use hbvib::{Contact, DampingForm, Hooks, ModeOptions, Model, nonlinear_mode};
 
 /// Damping of the chain.
 #[derive(Clone, Copy, Debug)]
@@ -36,15 +38,7 @@ fn model(damping: Damping, others: usize) -> Model {
     for (i, j, value) in [(3, 3, 0.05), (7, 7, 0.08), (9, 9, 0.08), (7, 9, -0.08), (9, 7, -0.08)] {
         add(&mut c, i, j, value);
     }
-    let mut model = Model::new(n).unwrap();
-    for (kind, a) in [
-        (MatrixKind::Mass, &m),
-        (MatrixKind::Stiffness, &k),
-        (MatrixKind::Damping, &c),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(n, a)).unwrap();
-    }
-    model.set_rayleigh(0.0, 0.002).unwrap();
+    let mut model = dense(&m, &k).damping(&c).rayleigh(0.0, 0.002).build();
     match damping {
         Damping::Dashpots => {}
         Damping::Lossy => model.set_loss_factor(0.01).unwrap(),
@@ -61,22 +55,16 @@ fn model(damping: Damping, others: usize) -> Model {
 
 #[test]
 fn a_mode_is_the_same_beside_a_structure_that_is_not_connected() {
-    let solver = SolverOptions {
-        harmonics: 3,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    };
+    let solver = harmonics(3);
     let at = [-0.7, -0.1, 0.3];
     for damping in [Damping::Dashpots, Damping::Lossy, Damping::Springs] {
         for damping_form in [DampingForm::Mass, DampingForm::Stiffness] {
             let of = |others: usize| {
                 let options = ModeOptions {
-                    log10_start: -1.5,
-                    log10_stop: 0.4,
                     at: &at,
                     damping_form,
                     reference_dof: Some(11),
-                    ..ModeOptions::default()
+                    ..amplitude_range(-1.5, 0.4)
                 };
                 let branch = nonlinear_mode(&model(damping, others), &solver, &options, &mut Hooks::default()).unwrap();
                 (0..at.len())

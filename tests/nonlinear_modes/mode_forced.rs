@@ -3,7 +3,9 @@
 //! at which the response lags by 90° only lies near the backbone.
 
 use crate::common::mode_cases::{Skewed, WaveMatrices, blisk_matrices, damped, damping, delta, follow, harmonic, only};
-use crate::common::{self, B1, B2, BASE, Blisk, all_harmonics, harmonics, relative_gap, slip};
+use crate::common::{
+    self, B1, B2, BASE, Blisk, all_harmonics, amplitude_range, harmonics, omega_range, relative_gap, slip,
+};
 use hbvib::{
     Branch, DampingForm, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, SolverOptions, Status, forced_response,
 };
@@ -64,13 +66,8 @@ fn compare(
         let omega = branch.omega()[point];
         let guess = all_harmonics(branch, point);
         let range = ForcedOptions {
-            omega_start: omega,
-            omega_stop: omega,
-            at: &[],
             guess: Some(&guess),
-            responses: &[],
-            together: false,
-            ..ForcedOptions::default()
+            ..omega_range(omega, omega)
         };
         let answer = forced_response(&model, solver, &range, &mut Hooks::default()).unwrap();
         assert_eq!(answer.status(), Status::Ok, "point {point}");
@@ -87,10 +84,8 @@ fn an_undamped_structure_under_the_balancing_force_answers_with_the_mode() {
             // Far into sliding the balancing force tends to a constant, the capacity of friction, and
             // no longer tells the amplitude.
             let range = ModeOptions {
-                log10_start: delta(&BASE).log10() + 2.0,
-                log10_stop: delta(&BASE).log10() + 4.0,
                 damping_form: form,
-                ..ModeOptions::default()
+                ..amplitude_range(delta(&BASE).log10() + 2.0, delta(&BASE).log10() + 4.0)
             };
             let model = damped(&BASE, 0.0);
             let branch = follow(&model, &harmonics(h), &range);
@@ -108,9 +103,7 @@ fn the_balancing_force_holds_for_contacts_across_sectors() {
         let model = skewed.model(false);
         let range = ModeOptions {
             choice: ModeChoice::Index(1),
-            log10_start: -1.0,
-            log10_stop: 2.0,
-            ..ModeOptions::default()
+            ..amplitude_range(-1.0, 2.0)
         };
         let branch = follow(&model, &harmonics(5), &range);
         let worst = compare(&model, &harmonics(5), &branch, DampingForm::Mass, |h| {
@@ -154,10 +147,8 @@ fn under_the_forces_of_the_paper_the_phase_resonance_lies_near_the_backbone() {
         let modal = x.dotc(&(&wave.mass * &x)).re.sqrt();
         let at = [modal.log10()];
         let range = ModeOptions {
-            log10_start: delta(&BASE).log10() + 1.0,
-            log10_stop: delta(&BASE).log10() + 6.0,
             at: &at,
-            ..ModeOptions::default()
+            ..amplitude_range(delta(&BASE).log10() + 1.0, delta(&BASE).log10() + 6.0)
         };
         let branch = follow(&model, &solver, &range);
         let (omega, d, point) = only(&branch, 0);

@@ -5,7 +5,7 @@ use crate::common::mode_cases::{
     Skewed, WaveMatrices, blisk_matrices, damped, damping, delta, disk_minus_ring, follow, harmonic, only, singular_at,
     spring,
 };
-use crate::common::{BASE, Blisk, data, harmonics, number};
+use crate::common::{BASE, Blisk, amplitude_range, data, harmonics, number};
 use hbvib::{Amplitude, Branch, ContactState, DampingForm, ModeChoice, ModeField, ModeOptions};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
@@ -73,11 +73,10 @@ fn slip_begins_at_the_amplitude_of_the_closed_form() {
     let wanted = number(&limits["alpha_crit_over_delta"]);
     for factor in [1e-3, 1.0, 1e3] {
         // The same onset wherever the range begins.
-        let range = ModeOptions {
-            log10_start: (factor * wanted * delta).log10() - 0.5,
-            log10_stop: (factor * wanted * delta).log10() + 4.0,
-            ..ModeOptions::default()
-        };
+        let range = amplitude_range(
+            (factor * wanted * delta).log10() - 0.5,
+            (factor * wanted * delta).log10() + 4.0,
+        );
         let branch = follow(&damped(&BASE, 0.0), &harmonics(3), &range);
         let found = 10f64.powf(branch.mode().unwrap().linear_up_to) / delta;
         assert!((found / wanted - 1.0).abs() < 1e-11, "{found}");
@@ -88,10 +87,8 @@ fn slip_begins_at_the_amplitude_of_the_closed_form() {
     let at = [1.0 - 1e-9, 1.0 + 1e-4].map(|a: f64| (a * delta).log10());
     let range = ModeOptions {
         amplitude: Amplitude::Contact(0),
-        log10_start: delta.log10() - 1.0,
-        log10_stop: delta.log10() + 1.0,
         at: &at,
-        ..ModeOptions::default()
+        ..amplitude_range(delta.log10() - 1.0, delta.log10() + 1.0)
     };
     let branch = follow(&damped(&BASE, 0.0), &harmonics(3), &range);
     assert!((branch.mode().unwrap().linear_up_to - delta.log10()).abs() < 1e-11);
@@ -164,10 +161,8 @@ fn with_proportional_damping_the_stuck_range_solves_the_damped_linear_problem() 
             let range = ModeOptions {
                 choice: ModeChoice::Index(family),
                 amplitude: Amplitude::Contact(0),
-                log10_start: onset - 2.0,
-                log10_stop: onset + 0.3,
                 damping_form: form,
-                ..ModeOptions::default()
+                ..amplitude_range(onset - 2.0, onset + 0.3)
             };
             let branch = follow(&damped(&case, beta), &harmonics(3), &range);
             let wave = blisk_matrices(&case, beta, 1);
@@ -185,10 +180,8 @@ fn with_damping_in_no_proportion_the_stuck_range_solves_the_damped_linear_proble
                 let skewed = Skewed::new(engine_order);
                 let range = ModeOptions {
                     choice: ModeChoice::Index(family),
-                    log10_start: -3.0,
-                    log10_stop: 0.0,
                     damping_form: form,
-                    ..ModeOptions::default()
+                    ..amplitude_range(-3.0, 0.0)
                 };
                 let branch = follow(&skewed.model(true), &harmonics(3), &range);
                 check(&branch, &skewed.matrices(1), &skewed.stuck_stiffness(), form);

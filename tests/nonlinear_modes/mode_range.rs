@@ -2,10 +2,9 @@
 //! slip one after the other.
 
 use crate::common::mode_cases::{damped, damping, delta, follow, only};
-use crate::common::{self, BASE, Blisk, harmonics};
-use hbvib::{
-    Branch, Constant, Contact, ContactState, MatrixKind, MatrixView, ModeChoice, ModeField, ModeOptions, Model,
-};
+use crate::common::models::dense;
+use crate::common::{self, BASE, Blisk, amplitude_range, harmonics};
+use hbvib::{Branch, Constant, Contact, ContactState, ModeChoice, ModeField, ModeOptions, Model};
 
 fn log10(branch: &Branch) -> &[f64] {
     branch.mode_field(ModeField::Log10Amplitude).unwrap()
@@ -40,11 +39,7 @@ fn check(branch: &Branch, from: f64, to: f64) {
 fn six_decades_are_followed_in_one_run_for_any_number_of_harmonics() {
     for h in [1, 3, 9, 31] {
         let from = delta(&BASE).log10() + 1.0;
-        let range = ModeOptions {
-            log10_start: from,
-            log10_stop: from + 6.0,
-            ..ModeOptions::default()
-        };
+        let range = amplitude_range(from, from + 6.0);
         println!("H = {h}");
         check(&follow(&damped(&BASE, 0.0), &harmonics(h), &range), from, from + 6.0);
     }
@@ -56,11 +51,7 @@ fn six_decades_are_followed_for_nodal_diameters_0_to_12() {
         let case = Blisk { engine_order, ..BASE };
         let start = case.sector().select_mode(ModeChoice::Index(0)).unwrap();
         let onset = (delta(&case) / (start.shape[common::D] - start.shape[common::R]).norm()).log10();
-        let range = ModeOptions {
-            log10_start: onset - 1.0,
-            log10_stop: onset + 5.0,
-            ..ModeOptions::default()
-        };
+        let range = amplitude_range(onset - 1.0, onset + 5.0);
         println!("EO {engine_order}");
         check(
             &follow(&damped(&case, 0.0), &harmonics(9), &range),
@@ -72,18 +63,9 @@ fn six_decades_are_followed_for_nodal_diameters_0_to_12() {
 
 /// Two masses in a row, each sprung to the next and to the ground, with contacts to the ground.
 fn two_masses(contacts: &[Contact]) -> Model {
-    let mut model = Model::new(2).unwrap();
-    let view = |a| MatrixView::dense(2, a);
-    model
-        .set_matrix(MatrixKind::Mass, &view(&[1.0, 0.0, 0.0, 1.3]))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &view(&[2.0, -1.0, -1.0, 2.5]))
-        .unwrap();
-    for contact in contacts {
-        model.add_contact(contact).unwrap();
-    }
-    model
+    dense(&[1.0, 0.0, 0.0, 1.3], &[2.0, -1.0, -1.0, 2.5])
+        .contacts(contacts)
+        .build()
 }
 
 #[test]
@@ -95,9 +77,7 @@ fn a_plain_structure_with_a_contact_to_the_ground_is_followed_from_stuck_to_slid
             let onset = (limit / kt / start.shape[0].norm()).log10();
             let range = ModeOptions {
                 choice: ModeChoice::Index(family),
-                log10_start: onset - 1.0,
-                log10_stop: onset + 5.0,
-                ..ModeOptions::default()
+                ..amplitude_range(onset - 1.0, onset + 5.0)
             };
             println!("kt = {kt}, limit {limit:e}, family {family}");
             let branch = follow(&model, &harmonics(9), &range);
@@ -131,9 +111,7 @@ fn contacts_of_different_slip_limits_begin_to_slip_one_after_the_other() {
     for family in [0, 1] {
         let range = ModeOptions {
             choice: ModeChoice::Index(family),
-            log10_start: -3.0,
-            log10_stop: 5.0,
-            ..ModeOptions::default()
+            ..amplitude_range(-3.0, 5.0)
         };
         let branch = follow(&model, &harmonics(9), &range);
         println!("family {family}");
@@ -166,10 +144,8 @@ fn a_range_may_begin_anywhere_and_ends_on_the_same_branch() {
     let at = [from + 4.9];
     let run = |start: f64| {
         let range = ModeOptions {
-            log10_start: from + start,
-            log10_stop: from + 5.0,
             at: &at,
-            ..ModeOptions::default()
+            ..amplitude_range(from + start, from + 5.0)
         };
         only(&follow(&damped(&BASE, 0.0), &harmonics(7), &range), 0)
     };

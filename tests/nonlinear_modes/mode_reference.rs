@@ -1,6 +1,6 @@
 //! The nonlinear mode of the bladed disk against the reference data: same-H solutions.
 
-use crate::common::{BASE, Blisk, D, R, data, harmonics, number};
+use crate::common::{BASE, Blisk, D, R, amplitude_range, data, harmonics, number};
 use hbvib::{Branch, Hooks, ModeField, ModeOptions, Model, SolverOptions, Status, nonlinear_mode};
 use num_complex::Complex64;
 
@@ -33,10 +33,8 @@ fn frequency_and_damping_against_amplitude_agree_with_the_reference_at_equal_h()
             .map(|row| (number(&row["alpha"]) * delta).log10())
             .collect();
         let range = ModeOptions {
-            log10_start: delta.log10() + 1.0,
-            log10_stop: delta.log10() + 7.0,
             at: &at,
-            ..ModeOptions::default()
+            ..amplitude_range(delta.log10() + 1.0, delta.log10() + 7.0)
         };
         let branch = follow(&undamped(), &harmonics(h), &range);
         let largest = number(&reference["H"][h.to_string()]["D_max"]["D"]);

@@ -3,9 +3,10 @@
 
 use crate::common::energy::{close, exactly};
 use crate::common::mode_cases::{N, Skewed, damping, follow, wave};
-use crate::common::{all_harmonics, phase};
+use crate::common::models::dense;
+use crate::common::{all_harmonics, amplitude_range, phase};
 use crate::mode_about_static::pressed_sector;
-use hbvib::{Branch, Constant, Contact, Energy, MatrixKind, MatrixView, ModeField, ModeOptions, Model, Speed, Spring};
+use hbvib::{Branch, Constant, Contact, Energy, MatrixKind, ModeField, Speed, Spring};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -236,18 +237,13 @@ fn energies_of_a_pressed_structure_count_from_its_static_state() {
     const ETA: f64 = 0.01;
     const CONSTANT: [f64; 3] = [0.1, -0.3, 0.2];
     let contact = Contact::friction_2d([Some(0), Some(1)], [None; 2], (1.0, 0.8), 0.3, 1.0);
-    let mut model = Model::new(N).unwrap();
-    for (kind, a) in [
-        (MatrixKind::Mass, M),
-        (MatrixKind::Damping, C),
-        (MatrixKind::Stiffness, K),
-        (MatrixKind::StiffnessSpeed2, K1),
-        (MatrixKind::Gyroscopic, G),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(N, &a)).unwrap();
-    }
-    model.set_speed(Speed::Fixed(SPEED)).unwrap();
-    model.set_loss_factor(ETA).unwrap();
+    let mut model = dense(&M, &K)
+        .damping(&C)
+        .set(MatrixKind::StiffnessSpeed2, &K1)
+        .set(MatrixKind::Gyroscopic, &G)
+        .speed(Speed::Fixed(SPEED))
+        .loss_factor(ETA)
+        .build();
     let spring = Spring {
         dof_a: Some(2),
         dof_b: Some(0),
@@ -273,11 +269,7 @@ fn energies_of_a_pressed_structure_count_from_its_static_state() {
         contacts: vec![contact],
         constant: DVector::from_column_slice(&CONSTANT),
     };
-    let range = ModeOptions {
-        log10_start: -2.0,
-        log10_stop: 0.8,
-        ..ModeOptions::default()
-    };
+    let range = amplitude_range(-2.0, 0.8);
     wheel.compare(&follow(&model, &exactly(5), &range), 8);
 }
 
@@ -314,10 +306,6 @@ fn energies_of_a_pressed_sector_and_of_its_wheel_count_from_the_static_state() {
     let [own, next] = &wheel.stiffness;
     let again = wave(N, own.as_slice(), next.as_slice(), phase(1, 2, 1, 5));
     assert!((again - skewed.matrices(1).stiffness).camax() < 1e-13);
-    let range = ModeOptions {
-        log10_start: -1.5,
-        log10_stop: 1.0,
-        ..ModeOptions::default()
-    };
+    let range = amplitude_range(-1.5, 1.0);
     wheel.compare(&follow(&model, &exactly(5), &range), 12);
 }

@@ -3,7 +3,7 @@
 
 use crate::common::depth::some_of;
 use crate::common::mode_cases::{damping, follow, harmonic};
-use crate::common::{all_harmonics, harmonics, laws::Plate, relative_gap};
+use crate::common::{all_harmonics, amplitude_range, harmonics, laws::Plate, relative_gap};
 use crate::mode_about_static::{answer, balancing, mass_of_three, pressed};
 use hbvib::{
     Branch, Call, Constant, Contact, ContactKind, Frame, Iwan, ModeChoice, ModeOptions, Monomial, Patch, Polynomial,
@@ -408,9 +408,7 @@ fn modes_with_every_law_balance_its_force_and_are_forced_responses() {
             };
             let range = ModeOptions {
                 choice: ModeChoice::Index(case.index),
-                log10_start: -3.0,
-                log10_stop: 0.5,
-                ..ModeOptions::default()
+                ..amplitude_range(-3.0, 0.5)
             };
             let branch = follow(&model, &solver, &range);
             let (mut gap, mut off, mut compared) = (0.0_f64, 0.0_f64, 0);

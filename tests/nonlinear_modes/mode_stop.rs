@@ -2,8 +2,9 @@
 //! amplitude in closed form, since it is linear on either side of the point of contact.
 
 use crate::common::mode_cases::{follow, only};
-use crate::common::{all_harmonics, harmonics};
-use hbvib::{Constant, Contact, MatrixKind, MatrixView, ModeOptions, Model, SolverOptions};
+use crate::common::models::oscillator;
+use crate::common::{all_harmonics, amplitude_range, harmonics};
+use hbvib::{Constant, Contact, ModeOptions, Model, SolverOptions};
 use std::f64::consts::PI;
 
 /// ẍ + kx = F + max(kn(−x − c), 0).
@@ -23,16 +24,10 @@ impl Stop {
     }
 
     fn model(&self) -> Model {
-        let mut model = Model::new(1).unwrap();
-        for (kind, value) in [(MatrixKind::Mass, 1.0), (MatrixKind::Stiffness, self.k)] {
-            model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
-        }
         let stop = Contact::unilateral(Some(0), None, self.kn, self.gap)
             .with(Constant::Preload, self.preload)
             .unwrap();
-        model.add_contact(&stop).unwrap();
-        model.add_force(0, 0, self.force.into()).unwrap();
-        model
+        oscillator(1.0, self.k).contact(&stop).force(0, 0, self.force).build()
     }
 
     /// Equilibria of the open and of the closed oscillator.
@@ -164,10 +159,8 @@ fn a_stop_under_constant_loads_has_the_period_of_the_closed_form() {
         let unit = unit(&stop);
         let at = [0.3, 0.9, 1.1, 1.5, 3.0, 10.0, 80.0].map(|t| (t * unit).log10());
         let range = ModeOptions {
-            log10_start: unit.log10() - 1.0,
-            log10_stop: unit.log10() + 2.0,
             at: &at,
-            ..ModeOptions::default()
+            ..amplitude_range(unit.log10() - 1.0, unit.log10() + 2.0)
         };
         let branch = follow(&stop.model(), &harmonics(63), &range);
         let info = branch.mode().unwrap();
@@ -204,11 +197,7 @@ fn a_stop_that_touches_without_a_load_has_one_frequency_at_every_amplitude() {
             gap: 0.0,
             force: 0.0,
         };
-        let range = ModeOptions {
-            log10_start: if h > 100 { 2.0 } else { -8.0 },
-            log10_stop: 3.0,
-            ..ModeOptions::default()
-        };
+        let range = amplitude_range(if h > 100 { 2.0 } else { -8.0 }, 3.0);
         let branch = follow(&stop.model(), &harmonics(h), &range);
         let info = branch.mode().unwrap();
         for never in [info.linear_up_to, info.lift_off_from] {
@@ -233,11 +222,7 @@ fn a_stop_that_touches_without_a_load_has_one_frequency_at_every_amplitude() {
 fn the_default_options_end_within_their_tolerance() {
     for stop in CASES {
         let unit = unit(&stop);
-        let range = ModeOptions {
-            log10_start: unit.log10() - 1.0,
-            log10_stop: unit.log10() + 2.0,
-            ..ModeOptions::default()
-        };
+        let range = amplitude_range(unit.log10() - 1.0, unit.log10() + 2.0);
         let branch = follow(&stop.model(), &SolverOptions::default(), &range);
         let tolerance = SolverOptions::default().tolerance;
         for (point, omega) in branch.omega().iter().enumerate() {
@@ -251,11 +236,7 @@ fn the_default_options_end_within_their_tolerance() {
 fn motions_are_total_and_potential_energy_counts_from_the_static_state() {
     let stop = CASES[3];
     let unit = unit(&stop);
-    let range = ModeOptions {
-        log10_start: unit.log10() - 1.0,
-        log10_stop: unit.log10() + 1.0,
-        ..ModeOptions::default()
-    };
+    let range = amplitude_range(unit.log10() - 1.0, unit.log10() + 1.0);
     let branch = follow(&stop.model(), &harmonics(31), &range);
     let x = all_harmonics(&branch, 0);
     let energy = branch.energy_at(0).unwrap();

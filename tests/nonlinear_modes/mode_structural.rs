@@ -2,7 +2,8 @@
 //! Jenkins contact at one harmonic, the balance of the works, and a speed that follows the frequency.
 
 use crate::common::mode_cases::{follow, only};
-use crate::common::{BASE, harmonics};
+use crate::common::models::{dense, oscillator};
+use crate::common::{BASE, amplitude_range, harmonics};
 use hbvib::internals::Condensed;
 use hbvib::internals::Jacobian;
 use hbvib::internals::{Epmc, Gauge, LinearMode};
@@ -16,17 +17,6 @@ use std::f64::consts::PI;
 
 const ETA: f64 = 0.05;
 
-fn oscillator(m: f64, k: f64, contact: &Contact) -> Model {
-    let mut model = Model::new(1).unwrap();
-    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(1, &[m])).unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(1, &[k]))
-        .unwrap();
-    model.set_loss_factor(ETA).unwrap();
-    model.add_contact(contact).unwrap();
-    model
-}
-
 #[test]
 fn a_loss_factor_on_a_linear_structure_is_half_of_it_as_damping_ratio() {
     // Without contact stiffness that matters, over the whole wheel: D = η/2 and ω stays.
@@ -39,9 +29,7 @@ fn a_loss_factor_on_a_linear_structure_is_half_of_it_as_damping_ratio() {
             let undamped = model.linear_modes(engine_order, ContactState::Stuck).unwrap();
             let options = ModeOptions {
                 choice: hbvib::ModeChoice::Index(family),
-                log10_start: -5.0,
-                log10_stop: -4.0,
-                ..ModeOptions::default()
+                ..amplitude_range(-5.0, -4.0)
             };
             let start = model.select_mode(options.choice).unwrap();
             let mode = model.damped_mode(&start, DampingForm::Mass).unwrap();
@@ -51,7 +39,10 @@ fn a_loss_factor_on_a_linear_structure_is_half_of_it_as_damping_ratio() {
     }
     // With a stuck contact beside it, which does not dissipate.
     let (m, k, kt) = (1.5, 40.0, 25.0);
-    let model = oscillator(m, k, &Contact::jenkins(0, None, kt, 1.0, 1e3));
+    let model = oscillator(m, k)
+        .loss_factor(ETA)
+        .contact(Contact::jenkins(0, None, kt, 1.0, 1e3))
+        .build();
     let branch = follow(
         &model,
         &harmonics(3),
@@ -78,7 +69,10 @@ fn describing_function(a: f64) -> Complex64 {
 #[test]
 fn a_loss_factor_beside_a_jenkins_contact_has_the_closed_form_of_one_harmonic() {
     let (m, k, kt, slip) = (1.5_f64, 40.0, 25.0, 0.1);
-    let model = oscillator(m, k, &Contact::jenkins(0, None, kt, 1.0, kt * slip));
+    let model = oscillator(m, k)
+        .loss_factor(ETA)
+        .contact(Contact::jenkins(0, None, kt, 1.0, kt * slip))
+        .build();
     let amplitudes = [1.01, 1.3, 2.0, 7.0, 100.0];
     let at: Vec<f64> = amplitudes.iter().map(|a| (a * slip * m.sqrt()).log10()).collect();
     let solver = SolverOptions {
@@ -131,17 +125,12 @@ fn the_works_of_a_mode_with_many_harmonics_balance_with_structural_damping() {
 
 /// Two masses whose motions gyroscopic forces couple, a Jenkins contact whose load depends on the speed.
 fn gyroscopic(speed: Speed) -> Model {
-    let mut model = Model::new(2).unwrap();
-    for (which, a) in [
-        (MatrixKind::Mass, [1.0, 0.0, 0.0, 1.3]),
-        (MatrixKind::Damping, [0.01, 0.0, 0.0, 0.02]),
-        (MatrixKind::Stiffness, [4.0, 0.3, 0.3, 9.0]),
-        (MatrixKind::Gyroscopic, [0.0, 0.8, -0.8, 0.0]),
-        (MatrixKind::StiffnessSpeed2, [-0.3, 0.1, 0.1, -0.2]),
-    ] {
-        model.set_matrix(which, &MatrixView::dense(2, &a)).unwrap();
-    }
-    model.add_contact(&Contact::jenkins(0, None, 3.0, 0.5, 0.1)).unwrap();
+    let mut model = dense(&[1.0, 0.0, 0.0, 1.3], &[4.0, 0.3, 0.3, 9.0])
+        .damping(&[0.01, 0.0, 0.0, 0.02])
+        .set(MatrixKind::Gyroscopic, &[0.0, 0.8, -0.8, 0.0])
+        .set(MatrixKind::StiffnessSpeed2, &[-0.3, 0.1, 0.1, -0.2])
+        .slider(0, 3.0, 0.5, 0.1)
+        .build();
     model.set_preload_at_speed(0, 0.05, 0.2).unwrap();
     model.set_speed(speed).unwrap();
     model
@@ -150,11 +139,9 @@ fn gyroscopic(speed: Speed) -> Model {
 fn options(index: usize, form: DampingForm, at: &[f64]) -> ModeOptions<'_> {
     ModeOptions {
         choice: hbvib::ModeChoice::Index(index),
-        log10_start: -3.0,
-        log10_stop: 1.0,
         damping_form: form,
         at,
-        ..ModeOptions::default()
+        ..amplitude_range(-3.0, 1.0)
     }
 }
 
@@ -250,18 +237,11 @@ fn two_ways(base: &Model, own: &[f64], next: Option<&[f64]>) -> [Model; 2] {
 }
 
 fn plain_of_two() -> (Model, [f64; 4]) {
-    let mut model = Model::new(2).unwrap();
     let stiffness = [4.0, -1.3, -1.3, 9.0];
-    for (which, a) in [
-        (MatrixKind::Mass, [1.0, 0.1, 0.1, 1.3]),
-        (MatrixKind::Stiffness, stiffness),
-    ] {
-        model.set_matrix(which, &MatrixView::dense(2, &a)).unwrap();
-    }
-    model.add_contact(&Contact::jenkins(0, None, 3.0, 0.5, 0.1)).unwrap();
-    model
-        .add_contact(&Contact::unilateral(Some(1), None, 2.0, -0.3))
-        .unwrap();
+    let model = dense(&[1.0, 0.1, 0.1, 1.3], &stiffness)
+        .slider(0, 3.0, 0.5, 0.1)
+        .contact(Contact::unilateral(Some(1), None, 2.0, -0.3))
+        .build();
     (model, stiffness)
 }
 
@@ -299,11 +279,9 @@ fn a_complex_symmetric_stiffness_has_the_modes_of_the_loss_factor() {
         }
         for damping_form in [DampingForm::Mass, DampingForm::Stiffness] {
             let range = ModeOptions {
-                log10_start,
-                log10_stop,
                 damping_form,
                 at: &at,
-                ..ModeOptions::default()
+                ..amplitude_range(log10_start, log10_stop)
             };
             let solver = harmonics(5);
             let [known, found] = [&by_factor, &by_matrix].map(|model| follow(model, &solver, &range));
@@ -329,10 +307,8 @@ fn a_structural_matrix_proportional_to_the_stiffness_is_a_loss_factor_in_a_mode(
         .unwrap();
     let at = [-1.0, 0.0, 0.3];
     let range = ModeOptions {
-        log10_start: -2.0,
-        log10_stop: 0.5,
         at: &at,
-        ..ModeOptions::default()
+        ..amplitude_range(-2.0, 0.5)
     };
     let solver = SolverOptions {
         tol_residual: 1e-14,

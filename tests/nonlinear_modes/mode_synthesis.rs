@@ -1,21 +1,15 @@
 //! Responses synthesised from a nonlinear mode against computed ones: how far the shortcut is from the
 //! harmonic balance that it stands for.
 
-use crate::common::{B2, BASE, Blisk, harmonics, sweep};
-use hbvib::{
-    Branch, Contact, Hooks, MatrixKind, MatrixView, ModeOptions, Model, SolverOptions, SynthesisOptions,
-    nonlinear_mode, synthesise,
-};
+use crate::common::models::{dense, oscillator};
+use crate::common::{B2, BASE, Blisk, amplitude_range, at_dof, harmonics, sweep};
+use hbvib::{Branch, Contact, Hooks, ModeOptions, Model, SolverOptions, SynthesisOptions, nonlinear_mode, synthesise};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 fn mode(model: &Model, solver: &SolverOptions) -> Branch {
     let delta = Blisk::mu() * BASE.preload() / BASE.kt();
-    let range = ModeOptions {
-        log10_start: delta.log10() - 1.0,
-        log10_stop: delta.log10() + 5.0,
-        ..ModeOptions::default()
-    };
+    let range = amplitude_range(delta.log10() - 1.0, delta.log10() + 5.0);
     nonlinear_mode(model, solver, &range, &mut Hooks::default()).unwrap()
 }
 
@@ -30,10 +24,7 @@ fn computed(force: f64, solver: &SolverOptions) -> (f64, f64) {
 }
 
 fn solver(h: usize) -> SolverOptions {
-    SolverOptions {
-        response_dof: Some(B2),
-        ..harmonics(h)
-    }
+    at_dof(B2, harmonics(h))
 }
 
 /// The bounds are a little above what was measured; the theory promises no more than that it is right
@@ -92,10 +83,8 @@ fn branch_damping(branch: &Branch, log10: f64) -> f64 {
     let mut undamped = BASE.sector();
     undamped.set_rayleigh(0.0, 0.0).unwrap();
     let range = ModeOptions {
-        log10_start: log10 - 4.0,
-        log10_stop: log10 + 0.1,
         at: &[log10],
-        ..ModeOptions::default()
+        ..amplitude_range(log10 - 4.0, log10 + 0.1)
     };
     let solver = harmonics(branch.harmonics());
     let exact = nonlinear_mode(&undamped, &solver, &range, &mut Hooks::default()).unwrap();
@@ -105,23 +94,12 @@ fn branch_damping(branch: &Branch, log10: f64) -> f64 {
 #[test]
 fn the_flanks_of_a_linear_mode_are_those_of_one_oscillator() {
     // One mass on a spring, stuck to the ground by a contact that never comes to slip here.
-    let mut model = Model::new(1).unwrap();
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(1, &[2.0]))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(1, &[3.0]))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Damping, &MatrixView::dense(1, &[0.05]))
-        .unwrap();
-    model.add_contact(&Contact::jenkins(0, None, 5.0, 1.0, 1e6)).unwrap();
-    model.add_force(0, 1, Complex64::new(0.3, 0.4)).unwrap();
-    let range = ModeOptions {
-        log10_start: -3.0,
-        log10_stop: 3.0,
-        ..ModeOptions::default()
-    };
+    let model = oscillator(2.0, 3.0)
+        .damping(&[0.05])
+        .slider(0, 5.0, 1.0, 1e6)
+        .force(0, 1, Complex64::new(0.3, 0.4))
+        .build();
+    let range = amplitude_range(-3.0, 3.0);
     let branch = nonlinear_mode(&model, &harmonics(3), &range, &mut Hooks::default()).unwrap();
     let found = synthesise(&branch, &model, &SynthesisOptions::default()).unwrap();
     assert!(found.points.len() > 20);
@@ -146,42 +124,24 @@ fn the_flanks_of_a_linear_mode_are_those_of_one_oscillator() {
 #[test]
 fn doubtful_resonances_are_told() {
     // Two equal oscillators, hardly coupled: each lies within the bandwidth of the other.
-    let mut model = Model::new(2).unwrap();
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(2, &[1.0, 0.0, 0.0, 1.0]))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(2, &[1.0, -1e-3, -1e-3, 1.0]))
-        .unwrap();
-    model.set_rayleigh(0.0, 0.02).unwrap();
-    model.add_contact(&Contact::cubic(0, None, 0.0, 1.0)).unwrap();
-    model.add_force(0, 1, 0.01.into()).unwrap();
-    let range = ModeOptions {
-        log10_start: -3.0,
-        log10_stop: 0.5,
-        ..ModeOptions::default()
-    };
+    let model = dense(&[1.0, 0.0, 0.0, 1.0], &[1.0, -1e-3, -1e-3, 1.0])
+        .rayleigh(0.0, 0.02)
+        .contact(Contact::cubic(0, None, 0.0, 1.0))
+        .force(0, 1, 0.01)
+        .build();
+    let range = amplitude_range(-3.0, 0.5);
     let branch = nonlinear_mode(&model, &harmonics(5), &range, &mut Hooks::default()).unwrap();
     let found = synthesise(&branch, &model, &SynthesisOptions::default()).unwrap();
     assert!(!found.peaks.is_empty());
     assert!(found.peaks[0].validity.another_mode(), "{:?}", found.peaks[0].validity);
 
     // Where an in-phase mode meets the other one 3:1, its amplitude turns and the third harmonic grows.
-    let mut model = Model::new(2).unwrap();
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(2, &[1.0, 0.0, 0.0, 1.0]))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(2, &[2.0, -1.0, -1.0, 2.0]))
-        .unwrap();
-    model.set_rayleigh(0.0, 2e-5).unwrap();
-    model.add_contact(&Contact::cubic(0, None, 0.0, 0.5)).unwrap();
-    model.add_force(1, 1, 1.0.into()).unwrap();
-    let range = ModeOptions {
-        log10_start: -2.0,
-        log10_stop: 3.0,
-        ..ModeOptions::default()
-    };
+    let model = dense(&[1.0, 0.0, 0.0, 1.0], &[2.0, -1.0, -1.0, 2.0])
+        .rayleigh(0.0, 2e-5)
+        .contact(Contact::cubic(0, None, 0.0, 0.5))
+        .force(1, 1, 1.0)
+        .build();
+    let range = amplitude_range(-2.0, 3.0);
     let branch = nonlinear_mode(&model, &harmonics(15), &range, &mut Hooks::default()).unwrap();
     let options = |force_factor| SynthesisOptions {
         force_factor,
@@ -211,11 +171,7 @@ fn a_mode_without_points_gives_a_response_without_points() {
             cancelled: Some(&cancelled),
             ..Hooks::default()
         };
-        let range = ModeOptions {
-            log10_start: -7.0,
-            log10_stop: -2.0,
-            ..ModeOptions::default()
-        };
+        let range = amplitude_range(-7.0, -2.0);
         let branch = nonlinear_mode(&BASE.sector(), &solver(7), &range, &mut hooks).unwrap();
         println!("stopped at check {stop_at}: {} points", branch.points());
         let found = synthesise(&branch, &BASE.sector(), &SynthesisOptions::default()).unwrap();

@@ -2,27 +2,23 @@
 //! contacts: a resonance without a flag is right within 1 %.
 
 use crate::common::mode_cases::follow;
-use crate::common::{harmonics, sweep};
+use crate::common::models::{coupled, dense};
+use crate::common::{amplitude_range, at_dof, harmonics, sweep};
 use hbvib::{
-    Constant, Contact, Hooks, MatrixKind, MatrixView, ModeChoice, ModeOptions, Model, SolverOptions, SynthesisOptions,
+    Constant, Contact, Hooks, MatrixKind, ModeChoice, ModeOptions, Model, SolverOptions, SynthesisOptions,
     SynthesisPoint, nonlinear_mode, synthesise,
 };
 
 /// Three masses in a chain under a force on one of them.
 fn chain(beta: f64, contacts: &[Contact], constant: f64, (dof, force): (usize, f64)) -> Model {
     const STIFFNESS: [f64; 9] = [2.0, -0.7, 0.0, -0.7, 2.6, -0.5, 0.0, -0.5, 3.1];
-    let mut model = Model::new(3).unwrap();
     let mass = [1.0, 0.0, 0.0, 0.0, 1.3, 0.0, 0.0, 0.0, 0.8];
-    for (kind, values) in [(MatrixKind::Mass, mass), (MatrixKind::Stiffness, STIFFNESS)] {
-        model.set_matrix(kind, &MatrixView::dense(3, &values)).unwrap();
-    }
-    model.set_rayleigh(0.0, beta).unwrap();
-    for contact in contacts {
-        model.add_contact(contact).unwrap();
-    }
-    model.add_force(1, 0, constant.into()).unwrap();
-    model.add_force(dof, 1, force.into()).unwrap();
-    model
+    dense(&mass, &STIFFNESS)
+        .rayleigh(0.0, beta)
+        .contacts(contacts)
+        .force(1, 0, constant)
+        .force(dof, 1, force)
+        .build()
 }
 
 fn cases() -> Vec<(&'static str, Vec<Contact>, f64)> {
@@ -79,11 +75,7 @@ fn the_error_of_a_synthesised_resonance_is_that_against_the_computed_peak() {
     for (name, contacts, constant) in cases() {
         for (beta, force) in [(0.003, 0.02), (0.01, 0.1), (0.05, 0.5)] {
             let model = chain(beta, &contacts, constant, (0, force));
-            let range = ModeOptions {
-                log10_start: -3.0,
-                log10_stop: 1.5,
-                ..ModeOptions::default()
-            };
+            let range = amplitude_range(-3.0, 1.5);
             let mut errors = Vec::new();
             // The default response degree of freedom is the one that moves most; the forced one is another.
             for response_dof in [None, Some(0), Some(2)] {
@@ -101,10 +93,7 @@ fn the_error_of_a_synthesised_resonance_is_that_against_the_computed_peak() {
                         continue;
                     }
                     valid += 1;
-                    let sought = SolverOptions {
-                        response_dof: Some(branch.response_dof()),
-                        ..solver
-                    };
+                    let sought = at_dof(branch.response_dof(), solver);
                     let computed = computed_peak(&model, &sought, &peak.at, branch.mode().unwrap().omega);
                     let nearest = computed
                         .unwrap_or_else(|| panic!("{name}, β = {beta}, {force}: no peak near {}", peak.at.omega));
@@ -147,29 +136,19 @@ fn the_error_of_overlapping_modes_is_that_against_the_nearest_peak() {
     .concat();
     let mut compared = 0;
     for loss in [0.03, 0.07, 0.1176, 0.15] {
-        let mut model = Model::new(4).unwrap();
         let diagonal: Vec<f64> = (0..16).map(|k| if k % 5 == 0 { mass[k / 5] } else { 0.0 }).collect();
         let structural: Vec<f64> = stiffness.iter().map(|k| loss * k).collect();
-        for (kind, values) in [
-            (MatrixKind::Mass, &diagonal),
-            (MatrixKind::Stiffness, &stiffness),
-            (MatrixKind::Structural, &structural),
-        ] {
-            model.set_matrix(kind, &MatrixView::dense(4, values)).unwrap();
-        }
-        model.add_contact(&Contact::jenkins(2, None, 0.3, 0.3, 1e3)).unwrap();
-        model.add_force(1, 1, 1.0.into()).unwrap();
-        let solver = SolverOptions {
-            response_dof: Some(0),
-            ..harmonics(1)
-        };
+        let model = dense(&diagonal, &stiffness)
+            .set(MatrixKind::Structural, &structural)
+            .slider(2, 0.3, 0.3, 1e3)
+            .force(1, 1, 1.0)
+            .build();
+        let solver = at_dof(0, harmonics(1));
         let swept = sweep(&model, &solver, 0.1, 4.0, &[]);
         for mode in 0..3 {
             let range = ModeOptions {
                 choice: ModeChoice::Index(mode),
-                log10_start: -1.0,
-                log10_stop: 1.5,
-                ..ModeOptions::default()
+                ..amplitude_range(-1.0, 1.5)
             };
             let branch = follow(&model, &solver, &range);
             let found = synthesise(&branch, &model, &SynthesisOptions::default()).unwrap();
@@ -199,15 +178,10 @@ fn the_phase_reference_does_not_change_a_resonance() {
     let mut found = Vec::new();
     for reference_dof in [None, Some(0), Some(1), Some(2)] {
         let range = ModeOptions {
-            log10_start: -3.0,
-            log10_stop: 1.5,
             reference_dof,
-            ..ModeOptions::default()
+            ..amplitude_range(-3.0, 1.5)
         };
-        let solver = SolverOptions {
-            response_dof: Some(0),
-            ..harmonics(5)
-        };
+        let solver = at_dof(0, harmonics(5));
         let branch = follow(&model, &solver, &range);
         let peak = synthesise(&branch, &model, &SynthesisOptions::default()).unwrap().peaks[0];
         found.push((peak.at.response.norm(), peak.at.omega, peak.validity.error));
@@ -242,23 +216,17 @@ impl Random {
 /// One to four masses on springs, with one or two contacts, half of them under loads at rest.
 fn random_chain(random: &mut Random) -> Model {
     let n = 1 + random.below(4);
-    let mut model = Model::new(n).unwrap();
-    let (mut mass, mut stiffness) = (vec![0.0; n * n], vec![0.0; n * n]);
+    let (mut mass, mut ground, mut between) = (vec![], vec![], vec![]);
     for i in 0..n {
-        mass[i * n + i] = random.within(0.5, 1.5);
-        stiffness[i * n + i] += random.within(0.6, 1.8);
+        mass.push(random.within(0.5, 1.5));
+        ground.push(random.within(0.6, 1.8));
         if i > 0 {
-            let k = random.within(0.3, 1.2);
-            stiffness[i * n + i] += k;
-            stiffness[(i - 1) * n + i - 1] += k;
-            stiffness[i * n + i - 1] -= k;
-            stiffness[(i - 1) * n + i] -= k;
+            between.push(random.within(0.3, 1.2));
         }
     }
-    for (kind, a) in [(MatrixKind::Mass, mass), (MatrixKind::Stiffness, stiffness)] {
-        model.set_matrix(kind, &MatrixView::dense(n, &a)).unwrap();
-    }
-    model.set_rayleigh(0.0, 10_f64.powf(random.within(-2.7, -1.3))).unwrap();
+    let mut model = coupled(&mass, &ground, &between)
+        .rayleigh(0.0, 10_f64.powf(random.within(-2.7, -1.3)))
+        .build();
     let loaded = random.unit() < 0.5;
     for _ in 0..=random.below(2) {
         let (dof, k) = (random.below(n), random.within(0.3, 1.5));
@@ -292,11 +260,7 @@ fn resonances_of_random_chains_without_a_flag_are_those_of_the_computed_peaks() 
     let (mut valid, mut flagged, mut failed, mut worst) = (0, 0, 0, 0.0_f64);
     for number in 0..120 {
         let model = random_chain(&mut random);
-        let range = ModeOptions {
-            log10_start: -3.0,
-            log10_stop: 1.0,
-            ..ModeOptions::default()
-        };
+        let range = amplitude_range(-3.0, 1.0);
         let mode = nonlinear_mode(&model, &harmonics(5), &range, &mut Hooks::default());
         let Ok(branch) = mode else {
             failed += 1;
@@ -309,10 +273,7 @@ fn resonances_of_random_chains_without_a_flag_are_those_of_the_computed_peaks() 
                 continue;
             }
             valid += 1;
-            let solver = SolverOptions {
-                response_dof: Some(branch.response_dof()),
-                ..harmonics(5)
-            };
+            let solver = at_dof(branch.response_dof(), harmonics(5));
             let Some(computed) = computed_peak(&model, &solver, &peak.at, branch.mode().unwrap().omega) else {
                 panic!("chain {number}: no peak near {}", peak.at.omega)
             };

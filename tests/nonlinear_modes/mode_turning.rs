@@ -1,19 +1,11 @@
 //! Nonlinear modes that do not simply go on: whose amplitude turns as soon as contacts slip, or whose
 //! frequency falls to nothing.
 
-use crate::common::{all_harmonics, harmonics};
-use hbvib::{Branch, Contact, Hooks, MatrixKind, MatrixView, ModeField, ModeOptions, Model, Status, nonlinear_mode};
+use crate::common::models::dense;
+use crate::common::{all_harmonics, amplitude_range, harmonics};
+use hbvib::{Branch, Contact, Hooks, ModeField, Model, Status, nonlinear_mode};
 use num_complex::Complex64;
 use std::f64::consts::PI;
-
-fn dense(n: usize, mass: &[f64], stiffness: &[f64]) -> Model {
-    let mut model = Model::new(n).unwrap();
-    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(n, mass)).unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, stiffness))
-        .unwrap();
-    model
-}
 
 fn log10(branch: &Branch) -> &[f64] {
     branch.mode_field(ModeField::Log10Amplitude).unwrap()
@@ -25,7 +17,7 @@ const STIFFNESS: [f64; 4] = [2.52, -0.3, -0.3, 0.8];
 /// Two masses, weakly coupled. While the contact of the second mass sticks, the first mode moves mostly
 /// the first mass; slip brings the frequencies together, and the motion goes over to the second mass.
 fn veering() -> Model {
-    let mut model = dense(2, &[1.0, 0.0, 0.0, 1.0], &STIFFNESS);
+    let mut model = dense(&[1.0, 0.0, 0.0, 1.0], &STIFFNESS).build();
     model.add_contact(&Contact::jenkins(1, None, KT, 1.0, KT)).unwrap();
     model
 }
@@ -60,21 +52,13 @@ fn solves_the_closed_form(branch: &Branch) {
 fn a_mode_whose_amplitude_turns_at_the_onset_of_slip_is_followed_round_the_corner() {
     let model = veering();
     let onset = {
-        let range = ModeOptions {
-            log10_start: -1.0,
-            log10_stop: 0.0,
-            ..ModeOptions::default()
-        };
+        let range = amplitude_range(-1.0, 0.0);
         let stuck = nonlinear_mode(&model, &harmonics(1), &range, &mut Hooks::default()).unwrap();
         stuck.mode().unwrap().linear_up_to
     };
     // From stuck contacts, and from an amplitude that only the far side of the turn reaches.
     for start in [onset - 3.0, onset + 0.5] {
-        let range = ModeOptions {
-            log10_start: start,
-            log10_stop: onset + 4.0,
-            ..ModeOptions::default()
-        };
+        let range = amplitude_range(start, onset + 4.0);
         let branch = nonlinear_mode(&model, &harmonics(1), &range, &mut Hooks::default()).unwrap();
         assert_eq!(branch.status(), Status::Ok);
         let p = log10(&branch);
@@ -93,13 +77,9 @@ fn a_mode_whose_amplitude_turns_at_the_onset_of_slip_is_followed_round_the_corne
 /// x″ + x − x³ = 0: one harmonic has ω² = 1 − ¾a², so that no motion is left at a = (4/3)^½.
 #[test]
 fn a_mode_that_softens_until_its_stiffness_is_gone_ends_there_with_numbers_that_mean_something() {
-    let mut model = dense(1, &[1.0], &[1.0]);
+    let mut model = dense(&[1.0], &[1.0]).build();
     model.add_contact(&Contact::cubic(0, None, 0.0, -1.0)).unwrap();
-    let range = ModeOptions {
-        log10_start: -2.0,
-        log10_stop: 2.0,
-        ..ModeOptions::default()
-    };
+    let range = amplitude_range(-2.0, 2.0);
     let branch = nonlinear_mode(&model, &harmonics(1), &range, &mut Hooks::default()).unwrap();
     assert_eq!(branch.status(), Status::StoppedStepTooSmall);
     assert!(branch.points() < 150, "{} points", branch.points());

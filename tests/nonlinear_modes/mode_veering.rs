@@ -2,7 +2,7 @@
 //! continuity, not by the order of frequencies. Same-H solutions.
 
 use crate::common::mode_cases::{damping, delta, follow, only};
-use crate::common::{BASE, Blisk, D, R, data, harmonics, number};
+use crate::common::{BASE, Blisk, D, R, amplitude_range, data, harmonics, number};
 use hbvib::{Branch, Constant, ModeChoice, ModeField, ModeOptions, Model, SolverOptions, Spring};
 
 /// The sector of a nodal diameter without structural damping, its contact's stiffness scaled, and
@@ -32,10 +32,8 @@ fn run(model: &Model, onset: f64, family: usize, solver: &SolverOptions) -> Bran
     let at = TIMES.map(|t| onset + t.log10());
     let range = ModeOptions {
         choice: ModeChoice::Index(family),
-        log10_start: onset - 0.5,
-        log10_stop: onset + 5.0,
         at: &at,
-        ..ModeOptions::default()
+        ..amplitude_range(onset - 0.5, onset + 5.0)
     };
     follow(model, solver, &range)
 }

@@ -2,7 +2,9 @@
 //! the wave where the sector is symmetric. Same-H solutions of the same physics.
 
 use crate::common::mode_cases::{damped, damping, delta, follow, only};
-use crate::common::{self, B2, BASE, Blisk, NDOF, SECTORS, all_harmonics, harmonics, phase, relative_gap};
+use crate::common::{
+    self, B2, BASE, Blisk, NDOF, SECTORS, all_harmonics, amplitude_range, harmonics, phase, relative_gap,
+};
 use hbvib::internals::Multiple;
 use hbvib::{Branch, DampingForm, ModeChoice, ModeOptions, Model};
 use num_complex::Complex64;
@@ -27,12 +29,10 @@ fn run(model: &Model, h: usize, choice: ModeChoice, onset: f64, form: DampingFor
     let at = TIMES.map(|t| onset + t.log10());
     let range = ModeOptions {
         choice,
-        log10_start: onset - 1.0,
-        log10_stop: onset + 4.5,
         at: &at,
         damping_form: form,
         reference_dof: Some(B2),
-        ..ModeOptions::default()
+        ..amplitude_range(onset - 1.0, onset + 4.5)
     };
     follow(model, &harmonics(h), &range)
 }
@@ -155,10 +155,8 @@ fn the_diameter_asked_for_is_the_forward_wave_whatever_the_model_s_engine_order(
         );
         let range = ModeOptions {
             diameter: Some(diameter),
-            log10_start: onset - 1.0,
-            log10_stop: onset + 4.5,
             reference_dof: Some(B2),
-            ..ModeOptions::default()
+            ..amplitude_range(onset - 1.0, onset + 4.5)
         };
         let asked = follow(&damped(&case(5), 0.0), &harmonics(5), &range);
         assert!(damping(&asked).iter().any(|&d| d > 1e-5));

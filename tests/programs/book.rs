@@ -4,8 +4,10 @@
 #![cfg(target_os = "linux")]
 
 use crate::common::markdown::{Fence, fences, headings, links, pages, read};
+use crate::common::models::oscillator;
+use crate::common::omega_range;
 use crate::common::programs::{library, printed, python, root, run, soname};
-use hbvib::{Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, Status, forced_response};
+use hbvib::{Hooks, SolverOptions, Status, forced_response};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -107,18 +109,12 @@ fn prepared(fence: &Fence, number: usize, folder: &Path) -> Command {
 pub fn first_response() -> &'static [f64] {
     static NUMBERS: OnceLock<Vec<f64>> = OnceLock::new();
     NUMBERS.get_or_init(|| {
-        let mut model = Model::new(1).unwrap();
-        for kind in [MatrixKind::Mass, MatrixKind::Stiffness] {
-            model.set_matrix(kind, &MatrixView::dense(1, &[1.0])).unwrap();
-        }
-        model.set_rayleigh(0.0, 0.02).unwrap();
-        model.add_contact(&Contact::jenkins(0, None, 1.0, 0.3, 1.0)).unwrap();
-        model.add_force(0, 1, 0.2.into()).unwrap();
-        let range = ForcedOptions {
-            omega_start: 0.8,
-            omega_stop: 1.6,
-            ..ForcedOptions::default()
-        };
+        let model = oscillator(1.0, 1.0)
+            .rayleigh(0.0, 0.02)
+            .slider(0, 1.0, 0.3, 1.0)
+            .force(0, 1, 0.2)
+            .build();
+        let range = omega_range(0.8, 1.6);
         let branch = forced_response(&model, &SolverOptions::default(), &range, &mut Hooks::default()).unwrap();
         let rows = branch.omega().iter().zip(branch.amplitude());
         let mut numbers: Vec<f64> = rows.flat_map(|(&omega, &amplitude)| [omega, amplitude]).collect();

@@ -5,8 +5,8 @@
 #![cfg(target_os = "linux")]
 
 use crate::common::programs::{printed, python, root, run, soname};
-use crate::common::{self, BASE, Blisk, data, number};
-use hbvib::{ForcedOptions, Hooks, SolverOptions, forced_response};
+use crate::common::{self, BASE, Blisk, at_dof, data, harmonics, number, omega_range};
+use hbvib::{Hooks, forced_response};
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::fs;
@@ -283,17 +283,8 @@ fn header_library_and_packages_have_the_version_of_the_crate() {
 
 /// The table that the examples print, from Rust.
 fn table() -> Vec<[f64; 3]> {
-    let solver = SolverOptions {
-        harmonics: 63,
-        response_dof: Some(common::B2),
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    };
-    let range = ForcedOptions {
-        omega_start: TAU * 207.0,
-        omega_stop: TAU * 211.0,
-        ..ForcedOptions::default()
-    };
+    let solver = at_dof(common::B2, harmonics(63));
+    let range = omega_range(TAU * 207.0, TAU * 211.0);
     [1.0, 5.0, 20.0]
         .map(|force| {
             let model = Blisk { force, ..BASE }.sector();

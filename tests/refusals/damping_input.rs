@@ -2,10 +2,10 @@
 //! modes, and structural damping in time.
 
 use crate::common::refusal::refused;
-use crate::common::{BASE, harmonics, solve_at};
+use crate::common::{BASE, harmonics, omega_range, solve_at};
 use hbvib::{
-    FloquetOptions, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Part, SolverOptions, Speed, Status, Storage,
-    TimeOptions, Values, VerifyOptions, Waves, floquet, forced_response, time_response,
+    FloquetOptions, Hooks, MatrixKind, MatrixView, Model, Part, SolverOptions, Speed, Status, Storage, TimeOptions,
+    Values, VerifyOptions, Waves, floquet, forced_response, time_response,
 };
 
 use num_complex::Complex64;
@@ -243,11 +243,7 @@ fn structural_damping_is_refused_in_time_with_its_viscous_equivalent() {
             stability: Some(Waves::Wheel),
             ..harmonics(3)
         };
-        let range = ForcedOptions {
-            omega_start: omega,
-            omega_stop: omega,
-            ..ForcedOptions::default()
-        };
+        let range = omega_range(omega, omega);
         refused(
             forced_response(&model, &solver, &range, &mut Hooks::default()),
             Status::Unsupported,

@@ -2,11 +2,8 @@
 //! matrices, a response without any force, and an undamped resonance.
 
 use crate::common::refusal::refused;
-use crate::common::{harmonics, peers::structure, sweep};
-use hbvib::{
-    Constant, Contact, ContactState, ForcedOptions, Hooks, ModeOptions, Model, SolverOptions, Status, forced_response,
-    nonlinear_mode,
-};
+use crate::common::{amplitude_range, harmonics, omega_range, peers::structure, sweep};
+use hbvib::{Constant, Contact, ContactState, Hooks, Model, SolverOptions, Status, forced_response, nonlinear_mode};
 
 #[test]
 fn a_contact_without_stiffness_is_refused_by_the_name_of_its_constant() {
@@ -46,11 +43,7 @@ fn a_model_without_matrices_is_refused_by_every_analysis() {
     let mut model = Model::new(2).unwrap();
     model.add_force(0, 1, 1.0.into()).unwrap();
     let sentence = &["no matrices were set"];
-    let range = ForcedOptions {
-        omega_start: 1.0,
-        omega_stop: 2.0,
-        ..ForcedOptions::default()
-    };
+    let range = omega_range(1.0, 2.0);
     let solver = SolverOptions::default();
     let hooks = &mut Hooks::default();
     refused(
@@ -58,11 +51,7 @@ fn a_model_without_matrices_is_refused_by_every_analysis() {
         Status::Argument,
         sentence,
     );
-    let amplitudes = ModeOptions {
-        log10_start: -1.0,
-        log10_stop: 1.0,
-        ..ModeOptions::default()
-    };
+    let amplitudes = amplitude_range(-1.0, 1.0);
     refused(
         nonlinear_mode(&model, &solver, &amplitudes, hooks),
         Status::Argument,

@@ -1,8 +1,9 @@
 //! Bad input to a nonlinear mode gives its stated error with a sentence that names the fault.
 
 use crate::common::mode_cases as modes;
+use crate::common::models::{dense, oscillator};
 use crate::common::refusal::{self, refused};
-use crate::common::{BASE, harmonics};
+use crate::common::{BASE, at_dof, harmonics};
 use hbvib::{
     Amplitude, Branch, Constant, Contact, Hooks, MatrixKind, MatrixView, ModeChoice, ModeOptions, Model, Result,
     SolverOptions, Status, nonlinear_mode,
@@ -115,15 +116,9 @@ fn an_empty_reversed_or_unbounded_amplitude_range_is_refused() {
 
 /// Three masses in a row on springs, symmetric about the middle one.
 fn row(contact: Option<Contact>) -> Model {
-    let mut model = Model::new(3).unwrap();
     let mass = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
     let stiffness = [2.0, -1.0, 0.0, -1.0, 2.0, -1.0, 0.0, -1.0, 2.0];
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(3, &mass))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(3, &stiffness))
-        .unwrap();
+    let mut model = dense(&mass, &stiffness).build();
     if let Some(contact) = contact {
         model.add_contact(&contact).unwrap();
     }
@@ -249,10 +244,7 @@ fn bad_solver_options_are_refused() {
         ..harmonics(3)
     };
     refused(with(&bad), Status::Argument, &["tol_residual = 0"]);
-    let bad = SolverOptions {
-        response_dof: Some(4),
-        ..harmonics(3)
-    };
+    let bad = at_dof(4, harmonics(3));
     refused(with(&bad), Status::Index, &["response_dof = 4", "0 .. 3"]);
 }
 
@@ -263,12 +255,7 @@ fn a_constant_load_that_nothing_holds_is_refused() {
         .with(Constant::Preload, 0.5)
         .unwrap();
     for contact in [stop, Contact::jenkins(0, None, 1.0, 0.5, 1.0)] {
-        let mut model = Model::new(1).unwrap();
-        for (kind, value) in [(MatrixKind::Mass, 1.0), (MatrixKind::Stiffness, 0.0)] {
-            model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
-        }
-        model.add_contact(&contact).unwrap();
-        model.add_force(0, 0, 2.0.into()).unwrap();
+        let model = oscillator(1.0, 0.0).contact(&contact).force(0, 0, 2.0).build();
         refused(
             follow(&model, &RANGE),
             Status::NoConvergence,
@@ -279,11 +266,7 @@ fn a_constant_load_that_nothing_holds_is_refused() {
 
 #[test]
 fn a_static_state_without_stability_is_refused() {
-    let mut model = Model::new(1).unwrap();
-    for (kind, value) in [(MatrixKind::Mass, 1.0), (MatrixKind::Stiffness, 1.0)] {
-        model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
-    }
-    model.add_contact(&Contact::cubic(0, None, 0.0, -1.0)).unwrap();
+    let mut model = oscillator(1.0, 1.0).contact(Contact::cubic(0, None, 0.0, -1.0)).build();
     // The spring x − x³ holds 0.385 at most; beyond lies only an unstable equilibrium.
     model.add_force(0, 0, 2.0.into()).unwrap();
     refused(
@@ -340,14 +323,7 @@ fn a_caller_may_stop_at_any_point_and_keeps_what_was_found() {
 /// Without linear damping the linear mode needs no artificial damping, but slip will.
 #[test]
 fn stiffness_type_damping_is_refused_where_all_stiffness_is_in_springs_and_contacts() {
-    let mut model = Model::new(1).unwrap();
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(1, &[2.0]))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(1, &[0.0]))
-        .unwrap();
-    model.add_contact(&Contact::jenkins(0, None, 3.0, 0.5, 1.0)).unwrap();
+    let model = oscillator(2.0, 0.0).slider(0, 3.0, 0.5, 1.0).build();
     let stiffness = ModeOptions {
         damping_form: hbvib::DampingForm::Stiffness,
         ..RANGE

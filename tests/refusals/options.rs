@@ -2,7 +2,7 @@
 //! leave the model usable: its response is the same afterwards, bit for bit.
 
 use crate::common::refusal::{OMEGA, refused, unharmed};
-use crate::common::{BASE, all_harmonics, harmonics, one_mass, solve_at};
+use crate::common::{BASE, all_harmonics, at_dof, harmonics, omega_range, one_mass, solve_at};
 use hbvib::{
     Amplitude, Contact, DampingForm, ForcedOptions, Hooks, MatrixKind, MatrixView, ModeChoice, ModeOptions, Model,
     Result, SolverOptions, Status, forced_response,
@@ -14,11 +14,7 @@ fn respond(model: &Model, solver: &SolverOptions, range: &ForcedOptions<'_>) -> 
 }
 
 fn range(from: f64, to: f64) -> ForcedOptions<'static> {
-    ForcedOptions {
-        omega_start: from,
-        omega_stop: to,
-        ..ForcedOptions::default()
-    }
+    omega_range(from, to)
 }
 
 #[test]
@@ -103,14 +99,7 @@ fn every_bad_solver_option_is_refused_by_name() {
         ),
         (SolverOptions { max_newton: 0, ..base }, Status::Argument, "max_newton"),
         (SolverOptions { max_points: 0, ..base }, Status::Argument, "max_points"),
-        (
-            SolverOptions {
-                response_dof: Some(4),
-                ..base
-            },
-            Status::Index,
-            "response_dof = 4",
-        ),
+        (at_dof(4, base), Status::Index, "response_dof = 4"),
     ];
     unharmed(|model| {
         for (options, status, name) in cases {

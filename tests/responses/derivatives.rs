@@ -1,9 +1,10 @@
 //! Derivatives of responses by parameters, against differences of solutions.
 
 use crate::common::chains::chain_with;
+use crate::common::{harmonics, omega_range};
 use hbvib::{
-    Branch, Component, Constant, ForcedOptions, Hooks, Measure, Parameter, Quantity, Response, SolverOptions,
-    forced_response, sensitivity,
+    Branch, Component, Constant, ForcedOptions, Hooks, Measure, Parameter, Quantity, Response, forced_response,
+    sensitivity,
 };
 
 const AT: [f64; 3] = [1.5, 0.3, 1.0];
@@ -50,16 +51,10 @@ fn responses() -> Vec<Response<'static>> {
 }
 
 fn solve(preload: f64, at: [f64; 3], (start, stop): (f64, f64), responses: &[Response<'_>]) -> Branch {
-    let solver = SolverOptions {
-        harmonics: 5,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    };
+    let solver = harmonics(5);
     let range = ForcedOptions {
-        omega_start: start,
-        omega_stop: stop,
         responses,
-        ..ForcedOptions::default()
+        ..omega_range(start, stop)
     };
     // A factor on the forces is one on the constant force, too.
     let model = chain_with(6, preload * at[2], at);

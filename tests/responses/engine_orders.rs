@@ -1,9 +1,10 @@
 //! Engine orders 2 and 3 in one run on one sector: each harmonic has its nodal diameter, and every blade is that of the whole wheel.
 
-use crate::common::Wheel;
+use crate::common::models::Structure;
+use crate::common::{Wheel, omega_range};
 use hbvib::{
-    Branch, Component, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Measure, Model, Response, SolverOptions,
-    TimeOptions, VerifyOptions, forced_response, time_response, verify,
+    Branch, Component, Contact, ForcedOptions, Hooks, MatrixKind, Measure, Model, Response, SolverOptions, TimeOptions,
+    VerifyOptions, forced_response, time_response, verify,
 };
 
 const FORCES: [(usize, f64); 2] = [(2, 0.05), (3, 0.04)];
@@ -20,13 +21,13 @@ const NEXT: [f64; 4] = [0.0, 0.0, 0.0, -1.0];
 /// of −1, backward: one sector, and the whole as a plain structure.
 fn models(sense: i64) -> (Model, Model) {
     let contact = Contact::jenkins(0, None, 0.6, 0.3, 0.2);
-    let mut sector = Model::cyclic(NDOF, SECTORS).unwrap();
-    let dense = |a: &'static [f64; 4]| MatrixView::dense(NDOF, a);
-    sector.set_matrix(MatrixKind::Mass, &dense(&MASS)).unwrap();
-    sector.set_matrix(MatrixKind::Stiffness, &dense(&OWN)).unwrap();
-    sector.set_coupling(MatrixKind::Stiffness, &dense(&NEXT)).unwrap();
-    sector.set_wave(sense);
-    sector.add_contact(&contact).unwrap();
+    let mut sector = Structure::cyclic(NDOF, SECTORS)
+        .mass(&MASS)
+        .stiffness(&OWN)
+        .next(MatrixKind::Stiffness, &NEXT)
+        .wave(sense)
+        .contact(&contact)
+        .build();
     let mut wheel = Wheel::new(NDOF, SECTORS);
     wheel.set(MatrixKind::Mass, &MASS, None, None);
     wheel.set(MatrixKind::Stiffness, &OWN, Some(&NEXT), None);
@@ -43,20 +44,14 @@ fn models(sense: i64) -> (Model, Model) {
 
 fn solve(model: &Model, (start, stop): (f64, f64), responses: &[Response<'_>], solver: &SolverOptions) -> Branch {
     let range = ForcedOptions {
-        omega_start: start,
-        omega_stop: stop,
         responses,
-        ..ForcedOptions::default()
+        ..omega_range(start, stop)
     };
     forced_response(model, solver, &range, &mut Hooks::default()).unwrap()
 }
 
 fn exactly(harmonics: usize) -> SolverOptions {
-    SolverOptions {
-        harmonics,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    }
+    crate::common::harmonics(harmonics)
 }
 
 const MEASURES: [Measure; 5] = [

@@ -2,10 +2,11 @@
 //! in time, and several in one norm.
 
 use crate::common::chains::{chain, chain_with, duffing};
+use crate::common::{amplitude_range, omega_range};
 use hbvib::{
-    BatchOptions, Branch, Component, Constant, Follow, ForcedOptions, Hooks, Measure, ModeOptions, Model, Parameter,
-    ParameterRange, Response, SolverOptions, Status, VerifyOptions, batch, forced_response, nonlinear_mode,
-    parameter_response, response_of, verify,
+    BatchOptions, Branch, Component, Constant, Follow, ForcedOptions, Hooks, Measure, Model, Parameter, ParameterRange,
+    Response, SolverOptions, Status, VerifyOptions, batch, forced_response, nonlinear_mode, parameter_response,
+    response_of, verify,
 };
 use num_complex::Complex64;
 
@@ -39,19 +40,13 @@ fn all() -> Vec<Response<'static>> {
 }
 
 fn exactly(harmonics: usize) -> SolverOptions {
-    SolverOptions {
-        harmonics,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    }
+    crate::common::harmonics(harmonics)
 }
 
 fn sweep(model: &Model, range: (f64, f64), responses: &[Response<'_>], solver: &SolverOptions) -> Branch {
     let range = ForcedOptions {
-        omega_start: range.0,
-        omega_stop: range.1,
         responses,
-        ..ForcedOptions::default()
+        ..omega_range(range.0, range.1)
     };
     forced_response(model, solver, &range, &mut Hooks::default()).unwrap()
 }
@@ -76,11 +71,7 @@ fn check_readings(branch: &Branch) {
 #[test]
 fn responses_of_any_branch_are_those_of_its_harmonics() {
     let model = chain(5, 0.4);
-    let mode = ModeOptions {
-        log10_start: -1.5,
-        log10_stop: 1.0,
-        ..ModeOptions::default()
-    };
+    let mode = amplitude_range(-1.5, 1.0);
     let mode = nonlinear_mode(&model, &exactly(5), &mode, &mut Hooks::default()).unwrap();
     assert!(mode.points() > 5);
     check_readings(&mode);
@@ -365,11 +356,9 @@ fn one_norm_of_all_responses_meets_the_tolerance() {
     for omega in [0.42, 0.55, 0.7, 0.9] {
         let solve = |together: bool, solver: &SolverOptions| {
             let range = ForcedOptions {
-                omega_start: omega,
-                omega_stop: omega,
                 responses: &responses,
                 together,
-                ..ForcedOptions::default()
+                ..omega_range(omega, omega)
             };
             forced_response(&model, solver, &range, &mut Hooks::default()).unwrap()
         };

@@ -1,6 +1,7 @@
 //! Kinks of a response, where another instant of the period takes the lead: found, with the derivatives of both sides.
 
 use crate::common::chains::chain;
+use crate::common::{harmonics, omega_range};
 use hbvib::{
     Branch, Component, ForcedOptions, Hooks, Measure, Model, Parameter, Quantity, Response, SolverOptions,
     forced_response, sensitivity,
@@ -17,16 +18,12 @@ fn two_orders(factor: f64) -> Model {
 
 fn solve(model: &Model, range: (f64, f64), responses: &[Response<'_>], step_max: f64) -> Branch {
     let solver = SolverOptions {
-        harmonics: 5,
-        tolerance: 0.0,
         step_max,
-        ..SolverOptions::default()
+        ..harmonics(5)
     };
     let range = ForcedOptions {
-        omega_start: range.0,
-        omega_stop: range.1,
         responses,
-        ..ForcedOptions::default()
+        ..omega_range(range.0, range.1)
     };
     forced_response(model, &solver, &range, &mut Hooks::default()).unwrap()
 }

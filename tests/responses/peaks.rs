@@ -1,27 +1,20 @@
 //! Peaks of every measure, against maxima of solutions at single frequencies, which know no peaks.
 
 use crate::common::chains::{chain, duffing};
-use hbvib::{
-    Branch, Component, ForcedOptions, Hooks, MatrixKind, MatrixView, Measure, Model, Response, SolverOptions,
-    forced_response,
-};
+use crate::common::models::unit_chain;
+use crate::common::{at_dof, harmonics, omega_range};
+use hbvib::{Branch, Component, ForcedOptions, Hooks, Measure, Model, Response, SolverOptions, forced_response};
 use num_complex::Complex64;
 
 fn solver() -> SolverOptions {
-    SolverOptions {
-        harmonics: 7,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    }
+    harmonics(7)
 }
 
 fn solve(model: &Model, (start, stop): (f64, f64), responses: &[Response<'_>], step_max: f64) -> Branch {
     let solver = SolverOptions { step_max, ..solver() };
     let range = ForcedOptions {
-        omega_start: start,
-        omega_stop: stop,
         responses,
-        ..ForcedOptions::default()
+        ..omega_range(start, stop)
     };
     forced_response(model, &solver, &range, &mut Hooks::default()).unwrap()
 }
@@ -29,11 +22,9 @@ fn solve(model: &Model, (start, stop): (f64, f64), responses: &[Response<'_>], s
 /// The responses at one frequency, from the motion of a point nearby.
 fn at(model: &Model, omega: f64, near: &[num_complex::Complex64], responses: &[Response<'_>]) -> Vec<f64> {
     let range = ForcedOptions {
-        omega_start: omega,
-        omega_stop: omega,
         guess: Some(near),
         responses,
-        ..ForcedOptions::default()
+        ..omega_range(omega, omega)
     };
     let found = forced_response(model, &solver(), &range, &mut Hooks::default()).unwrap();
     found.responses().iter().map(|r| r.values()[0]).collect()
@@ -169,15 +160,8 @@ fn a_linear_structure_has_the_peaks_of_each_degree_of_freedom() {
         .collect();
     let branch = solve(&model, (0.1, 2.5), &responses, 0.0);
     for (dof, found) in branch.responses().iter().enumerate() {
-        let alone = SolverOptions {
-            response_dof: Some(dof),
-            ..solver()
-        };
-        let range = ForcedOptions {
-            omega_start: 0.1,
-            omega_stop: 2.5,
-            ..ForcedOptions::default()
-        };
+        let alone = at_dof(dof, solver());
+        let range = omega_range(0.1, 2.5);
         let alone = forced_response(&model, &alone, &range, &mut Hooks::default()).unwrap();
         assert_eq!(found.peaks().len(), alone.peaks().len(), "degree of freedom {dof}");
         for (a, b) in found.peaks().iter().zip(alone.peaks()) {
@@ -243,18 +227,11 @@ fn a_long_chain_has_the_peaks_of_its_closed_form_and_no_others() {
             }
         }
         assert_eq!(known.len(), count, "{ratio}");
-        let mut model = chain_between_walls(N);
+        let mut model = unit_chain(N).build();
         model.set_modal_damping(&[ratio; N]).unwrap();
         model.add_force(force, 1, 1.0.into()).unwrap();
-        let options = SolverOptions {
-            response_dof: Some(response),
-            ..solver()
-        };
-        let sweep = ForcedOptions {
-            omega_start: range.0,
-            omega_stop: range.1,
-            ..ForcedOptions::default()
-        };
+        let options = at_dof(response, solver());
+        let sweep = omega_range(range.0, range.1);
         let branch = forced_response(&model, &options, &sweep, &mut Hooks::default()).unwrap();
         assert_eq!(branch.peaks().len(), count, "{ratio}");
         for (found, (omega, amplitude)) in branch.peaks().iter().zip(known) {
@@ -265,22 +242,4 @@ fn a_long_chain_has_the_peaks_of_its_closed_form_and_no_others() {
             assert!(off.0 < 1e-9 && off.1 < 1e-9, "{ratio}: {omega} {off:?}");
         }
     }
-}
-
-/// Equal masses on equal springs.
-fn chain_between_walls(n: usize) -> Model {
-    let (mut mass, mut stiffness) = (vec![0.0; n * n], vec![0.0; n * n]);
-    for i in 0..n {
-        mass[i * (n + 1)] = 1.0;
-        stiffness[i * (n + 1)] = 2.0;
-        if i > 0 {
-            stiffness[i * n + i - 1] = -1.0;
-            stiffness[(i - 1) * n + i] = -1.0;
-        }
-    }
-    let mut model = Model::new(n).unwrap();
-    for (kind, values) in [(MatrixKind::Mass, &mass), (MatrixKind::Stiffness, &stiffness)] {
-        model.set_matrix(kind, &MatrixView::dense(n, values)).unwrap();
-    }
-    model
 }

@@ -1,6 +1,7 @@
 //! Peaks of linear structures of every size and damping, also under gyroscopic forces: against maxima of their closed form.
 
 use crate::common::depth::some_of;
+use crate::common::{at_dof, harmonics, omega_range};
 use hbvib::{
     Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Measure, Model, Response, SolverOptions, Special, Speed,
     forced_response,
@@ -75,18 +76,9 @@ fn maxima((low, high): (f64, f64), width: f64, amplitude: impl Fn(f64) -> f64) -
 
 /// Compares the peaks of a sweep in both directions with maxima.
 fn check(model: &Model, range: (f64, f64), response: usize, right: &[(f64, f64)], what: &str) {
-    let solver = SolverOptions {
-        harmonics: 1,
-        tolerance: 0.0,
-        response_dof: Some(response),
-        ..SolverOptions::default()
-    };
+    let solver = at_dof(response, harmonics(1));
     for (from, to) in [range, (range.1, range.0)] {
-        let sweep = ForcedOptions {
-            omega_start: from,
-            omega_stop: to,
-            ..ForcedOptions::default()
-        };
+        let sweep = omega_range(from, to);
         let branch = forced_response(model, &solver, &sweep, &mut Hooks::default()).unwrap();
         let mut found: Vec<(f64, f64)> = branch.peaks().iter().map(|p| (p.omega, p.amplitude)).collect();
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -254,10 +246,8 @@ fn a_harmonic_that_no_contact_feels_has_its_peak() {
             }
             for (omega_start, omega_stop) in [(0.4, 2.4), (2.4, 0.4)] {
                 let range = ForcedOptions {
-                    omega_start,
-                    omega_stop,
                     responses: &responses,
-                    ..ForcedOptions::default()
+                    ..omega_range(omega_start, omega_stop)
                 };
                 let branch = forced_response(&model, &SolverOptions::default(), &range, &mut Hooks::default()).unwrap();
                 let near = |peak: &&Special| (peak.omega - omega).abs() < 1e-6 * omega;

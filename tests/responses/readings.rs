@@ -1,9 +1,10 @@
 //! Values of the responses at every stored point of a branch, against its own harmonics, sampled in time.
 
 use crate::common::chains::chain;
+use crate::common::models::Structure;
+use crate::common::{at_dof, harmonics, omega_range};
 use hbvib::{
-    Branch, Component, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Measure, Model, Response, SolverOptions,
-    forced_response,
+    Branch, Component, Contact, ForcedOptions, Hooks, Measure, Model, Response, SolverOptions, forced_response,
 };
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -107,11 +108,9 @@ fn solve(model: &Model, responses: &[Response<'_>], tolerance: f64) -> Branch {
         ..SolverOptions::default()
     };
     let range = ForcedOptions {
-        omega_start: 0.2,
-        omega_stop: 1.3,
         at: &[0.61],
         responses,
-        ..ForcedOptions::default()
+        ..omega_range(0.2, 1.3)
     };
     forced_response(model, &solver, &range, &mut Hooks::default()).unwrap()
 }
@@ -149,36 +148,27 @@ fn every_response_is_that_of_the_harmonics_in_time() {
 /// The mean of this sector is zero in all of its motions, so that none is known by its frequency and its first unknown.
 #[test]
 fn solutions_at_one_frequency_have_readings_of_their_own() {
-    let mut model = Model::cyclic(1, 10).unwrap();
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(1, &[1.0]))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(1, &[2.2]))
-        .unwrap();
-    model.set_rayleigh(0.0, 0.01).unwrap();
-    model.set_wave(7);
+    let mut model = Structure::cyclic(1, 10)
+        .mass(&[1.0])
+        .stiffness(&[2.2])
+        .rayleigh(0.0, 0.01)
+        .wave(7)
+        .build();
     let mut between = Contact::cubic(0, Some(0), 0.1, 0.06);
     between.sector_offset = 1;
     model.add_contact(&between).unwrap();
     model.add_force(0, 1, 0.9.into()).unwrap();
     model.add_force(0, 2, Complex64::new(0.0, 0.3)).unwrap();
-    let solver = SolverOptions {
-        harmonics: 5,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    };
+    let solver = harmonics(5);
     let responses = [Measure::Rms, Measure::Peak].map(|measure| Response {
         measure,
         dofs: &[0],
         ..Response::default()
     });
     let range = ForcedOptions {
-        omega_start: 0.7,
-        omega_stop: 2.6,
         at: &[1.5],
         responses: &responses,
-        ..ForcedOptions::default()
+        ..omega_range(0.7, 2.6)
     };
     let branch = forced_response(&model, &solver, &range, &mut Hooks::default()).unwrap();
     let found = branch.at(0);
@@ -215,17 +205,10 @@ fn the_first_response_leads_the_amplitude_and_the_peaks() {
         }
     }
     // The plain response of the same degree of freedom changes nothing.
-    let named = SolverOptions {
-        harmonics: 7,
-        tolerance: 0.0,
-        response_dof: Some(4),
-        ..SolverOptions::default()
-    };
+    let named = at_dof(4, harmonics(7));
     let range = ForcedOptions {
-        omega_start: 0.2,
-        omega_stop: 1.3,
         at: &[0.61],
-        ..ForcedOptions::default()
+        ..omega_range(0.2, 1.3)
     };
     let by_dof = forced_response(&model, &named, &range, &mut Hooks::default()).unwrap();
     let by_response = solve(

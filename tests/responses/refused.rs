@@ -1,6 +1,7 @@
 //! Responses that make no sense are refused by a sentence that names them.
 
 use crate::common::chains::chain;
+use crate::common::{at_dof, omega_range};
 use hbvib::{Component, ForcedOptions, Hooks, Measure, Response, SolverOptions, forced_response};
 
 #[test]
@@ -52,10 +53,8 @@ fn what_makes_no_sense_is_refused() {
     for (response, text) in cases {
         let responses = [response];
         let range = ForcedOptions {
-            omega_start: 0.5,
-            omega_stop: 0.6,
             responses: &responses,
-            ..ForcedOptions::default()
+            ..omega_range(0.5, 0.6)
         };
         let e = forced_response(&model, &SolverOptions::default(), &range, &mut Hooks::default()).unwrap_err();
         assert!(e.to_string().contains(text), "{e}");
@@ -65,15 +64,10 @@ fn what_makes_no_sense_is_refused() {
         ..Response::default()
     }];
     let range = ForcedOptions {
-        omega_start: 0.5,
-        omega_stop: 0.6,
         responses: &responses,
-        ..ForcedOptions::default()
+        ..omega_range(0.5, 0.6)
     };
-    let solver = SolverOptions {
-        response_dof: Some(2),
-        ..SolverOptions::default()
-    };
+    let solver = at_dof(2, SolverOptions::default());
     let e = forced_response(&model, &solver, &range, &mut Hooks::default()).unwrap_err();
     assert!(
         e.to_string()

@@ -1,6 +1,7 @@
 //! The tolerance holds for every response: errors against solutions with many more harmonics.
 
 use crate::common::chains::chain;
+use crate::common::{harmonics, omega_range};
 use hbvib::{ForcedOptions, Hooks, Measure, Response, SolverOptions, forced_response};
 
 #[test]
@@ -19,10 +20,8 @@ fn the_estimate_of_each_response_bounds_its_error() {
         for omega in [0.42, 0.55, 0.7, 0.9] {
             let solve = |solver: SolverOptions| {
                 let range = ForcedOptions {
-                    omega_start: omega,
-                    omega_stop: omega,
                     responses: &responses,
-                    ..ForcedOptions::default()
+                    ..omega_range(omega, omega)
                 };
                 forced_response(&model, &solver, &range, &mut Hooks::default()).unwrap()
             };
@@ -30,11 +29,7 @@ fn the_estimate_of_each_response_bounds_its_error() {
                 tolerance,
                 ..SolverOptions::default()
             });
-            let exact = solve(SolverOptions {
-                tolerance: 0.0,
-                harmonics: 151,
-                ..SolverOptions::default()
-            });
+            let exact = solve(harmonics(151));
             for ((found, exact), response) in found.responses().iter().zip(exact.responses()).zip(&responses) {
                 let (value, exact) = (found.values()[0], exact.values()[0]);
                 let error = (value / exact - 1.0).abs();

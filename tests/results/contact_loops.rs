@@ -2,28 +2,18 @@
 //! time and against the energies of the point.
 
 use crate::common::energy::{close, exactly};
-use crate::common::{self, B1, BASE, D, R, all_harmonics, harmonics, solve_at, sweep};
+use crate::common::models::oscillator;
+use crate::common::{self, B1, BASE, D, R, all_harmonics, amplitude_range, harmonics, solve_at, sweep};
 use hbvib::{
-    Branch, Constant, Contact, ContactKind, ContactLoop, ContactSummary, Hooks, MatrixKind, MatrixView, ModeOptions,
-    Model, SolverOptions, State, Status, contact_evaluate, nonlinear_mode,
+    Branch, Constant, Contact, ContactKind, ContactLoop, ContactSummary, Hooks, Model, SolverOptions, State, Status,
+    contact_evaluate, nonlinear_mode,
 };
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// Mass 1, damping 0.05 and stiffness 4.
-fn oscillator(contacts: &[Contact]) -> Model {
-    let mut model = Model::new(1).unwrap();
-    for (kind, value) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Damping, 0.05),
-        (MatrixKind::Stiffness, 4.0),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
-    }
-    for contact in contacts {
-        model.add_contact(contact).unwrap();
-    }
-    model
+fn oscillating(contacts: &[Contact]) -> Model {
+    oscillator(1.0, 4.0).damping(&[0.05]).contacts(contacts).build()
 }
 
 /// ∮ f dy by the trapezoidal rule.
@@ -124,7 +114,7 @@ fn a_slider_under_one_harmonic_takes_four_limits_times_the_slip() {
     contact_evaluate(&contact, 1, 0, 1.0, &y, &mut law, None).unwrap();
     assert!((law[1].re / 5.0 - 0.504_632).abs() < 5e-7, "{}", law[1].re / 5.0);
     let omega = 1.3;
-    let mut model = oscillator(core::slice::from_ref(&contact));
+    let mut model = oscillating(core::slice::from_ref(&contact));
     let linear = Complex64::new(4.0 - omega * omega, 0.05 * omega);
     model.add_force(0, 1, linear * 5.0 + law[1]).unwrap();
     let branch = solve_at(&model, &exactly(1), omega);
@@ -159,7 +149,7 @@ fn contacts_of_one_motion_have_a_loop_each() {
         (exactly(9), [(1, 0.7), (2, 0.5)]),
         (exactly(7), [(0, 0.3), (1, 0.8)]),
     ] {
-        let mut model = oscillator(&contacts);
+        let mut model = oscillating(&contacts);
         for (h, f) in forces {
             let value = if h == 0 { f.into() } else { Complex64::new(f, 0.3) };
             model.add_force(0, h, value).unwrap();
@@ -186,11 +176,7 @@ fn the_ring_damper_balances_contact_by_contact() {
 fn points_of_a_mode_have_loops() {
     let (model, contact) = (BASE.sector(), BASE.contact());
     let unit = (contact.slip_limit() / contact.constant(Constant::Kt)).log10();
-    let range = ModeOptions {
-        log10_start: unit + 1.0,
-        log10_stop: unit + 4.0,
-        ..ModeOptions::default()
-    };
+    let range = amplitude_range(unit + 1.0, unit + 4.0);
     let branch = nonlinear_mode(&model, &harmonics(5), &range, &mut Hooks::default()).unwrap();
     assert_eq!(branch.status(), Status::Ok);
     let slipping = (0..branch.points()).filter(|&p| common::slip(&branch, p) > 0.05);
@@ -275,7 +261,7 @@ fn a_stop_pushes_or_is_open() {
         let contact = Contact::unilateral(None, Some(0), 3.0, gap)
             .with(Constant::Preload, preload)
             .unwrap();
-        let mut model = oscillator(&[contact]);
+        let mut model = oscillating(&[contact]);
         model.add_force(0, 1, 0.8.into()).unwrap();
         let branch = solve_at(&model, &exactly(9), 1.7);
         let n = 1 << 14;
@@ -307,7 +293,7 @@ fn a_stop_pushes_or_is_open() {
 
 #[test]
 fn a_cubic_spring_has_a_curve_for_a_loop() {
-    let mut model = oscillator(&[Contact::cubic(0, None, 0.5, 2.0)]);
+    let mut model = oscillating(&[Contact::cubic(0, None, 0.5, 2.0)]);
     model.add_force(0, 1, 0.8.into()).unwrap();
     let branch = solve_at(&model, &exactly(7), 1.7);
     let l = branch.contact_loop(0, 0, 100).unwrap();
@@ -339,7 +325,7 @@ fn a_branch_of_samples_tells_the_exact_law() {
 
 #[test]
 fn time_histories_are_the_sums_of_the_harmonics() {
-    let mut linear = oscillator(&[]);
+    let mut linear = oscillating(&[]);
     for (h, f) in [(0, 0.5), (2, 0.3), (5, 0.2)] {
         linear.add_force(0, h, f.into()).unwrap();
     }
@@ -368,7 +354,7 @@ fn units_and_wrong_numbers() {
     // Lengths a million times smaller, forces alike: the loop scales.
     let contact = |unit: f64| Contact::jenkins(0, None, 5.0, 0.3, 0.7 * unit);
     let loops = [1.0, 1e-6].map(|unit| {
-        let mut model = oscillator(&[contact(unit)]);
+        let mut model = oscillating(&[contact(unit)]);
         model.add_force(0, 1, (0.9 * unit).into()).unwrap();
         let branch = solve_at(&model, &exactly(5), 2.1);
         (branch.contact_loop(0, 0, 40).unwrap(), branch)

@@ -1,6 +1,7 @@
 //! Energies and losses of a point: against closed forms and against the work of the forces.
 
 use crate::common::energy::{close, energy, exactly, maximum, work};
+use crate::common::models::oscillator;
 use crate::common::{BASE, Blisk, all_harmonics, harmonics, slip, solve_at};
 use hbvib::{Contact, Energy, MatrixKind, MatrixView, Model, Part, Status};
 use num_complex::Complex64;
@@ -8,14 +9,7 @@ use std::f64::consts::TAU;
 
 /// A mass on a spring, M = 2 and K = 8.
 fn mass_on_spring() -> Model {
-    let mut model = Model::new(1).unwrap();
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(1, &[2.0]))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(1, &[8.0]))
-        .unwrap();
-    model
+    oscillator(2.0, 8.0).build()
 }
 
 #[test]

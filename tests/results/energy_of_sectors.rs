@@ -2,8 +2,9 @@
 //! plain structure, and the work of the forces.
 
 use crate::common::energy::{close, energy, exactly, maximum, mean, work};
+use crate::common::models::Structure;
 use crate::common::{BASE, Blisk, SECTORS, Wheel, all_harmonics, harmonics, phase, slip, solve_at};
-use hbvib::{Branch, Contact, Energy, MatrixKind, MatrixView, Model, SolverOptions};
+use hbvib::{Branch, Contact, Energy, MatrixKind, Model, SolverOptions};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -49,29 +50,22 @@ impl Skewed {
     }
 
     fn sector(self) -> Model {
-        let mut model = Model::cyclic(N, SECTORS).unwrap();
-        let dense = |a| MatrixView::dense(N, a);
-        for (which, own, next) in [
-            (MatrixKind::Mass, &MASS, &MASS_NEXT),
-            (MatrixKind::Stiffness, &STIFFNESS, &STIFFNESS_NEXT),
-        ] {
-            model.set_matrix(which, &dense(own)).unwrap();
-            model.set_coupling(which, &dense(next)).unwrap();
-        }
+        let mut sector = Structure::cyclic(N, SECTORS)
+            .mass(&MASS)
+            .next(MatrixKind::Mass, &MASS_NEXT)
+            .stiffness(&STIFFNESS)
+            .next(MatrixKind::Stiffness, &STIFFNESS_NEXT);
         if self.damped {
-            let which = MatrixKind::Damping;
-            model.set_matrix(which, &dense(&DAMPING)).unwrap();
-            model.set_coupling(which, &dense(&DAMPING_NEXT)).unwrap();
-            model.set_coupling_previous(which, &dense(&DAMPING_PREVIOUS)).unwrap();
+            sector = sector
+                .damping(&DAMPING)
+                .next(MatrixKind::Damping, &DAMPING_NEXT)
+                .previous(MatrixKind::Damping, &DAMPING_PREVIOUS);
         }
-        model.set_wave(self.engine_order);
-        for contact in self.contacts() {
-            model.add_contact(&contact).unwrap();
-        }
-        for (dof, h, value) in FORCES {
-            model.add_force(dof, h, value).unwrap();
-        }
-        model
+        sector
+            .wave(self.engine_order)
+            .contacts(self.contacts())
+            .forces(FORCES)
+            .build()
     }
 
     fn full_wheel(self) -> Model {

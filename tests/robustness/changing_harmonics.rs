@@ -1,7 +1,7 @@
 //! Sweeps along which the tolerance changes the harmonics: no change turns the branch round.
 
 use crate::common::peers::structure;
-use crate::common::{harmonics, sweep};
+use crate::common::{at_dof, harmonics, sweep};
 use crate::random_problems::random::{Random, from_environment};
 use hbvib::internals::eigen;
 use hbvib::{Branch, Contact, Interrupt, Model, SolverOptions, Status};
@@ -22,10 +22,7 @@ fn three_masses() -> Model {
 #[test]
 fn a_third_harmonic_that_appears_at_its_resonance_does_not_turn_the_branch() {
     let model = three_masses();
-    let observed = |solver| SolverOptions {
-        response_dof: Some(0),
-        ..solver
-    };
+    let observed = |solver| at_dof(0, solver);
     for (from, to) in [(0.5, 1.3), (1.3, 0.5)] {
         for solver in [SolverOptions::default(), harmonics(9), harmonics(31)] {
             let branch = sweep(&model, &observed(solver), from, to, &[]);
@@ -124,10 +121,7 @@ struct Compared {
 }
 
 fn compare_one(case: &Case, (from, to): (f64, f64)) -> Compared {
-    let by_tolerance = SolverOptions {
-        response_dof: Some(case.response),
-        ..SolverOptions::default()
-    };
+    let by_tolerance = at_dof(case.response, SolverOptions::default());
     let fine = |step_max: f64| SolverOptions {
         response_dof: Some(case.response),
         step_max,

@@ -1,10 +1,12 @@
 //! Every stored number of a branch is finite, however the solve ends: without damping, with absurd units, with steps
 //! that cannot be kept. Only error estimates may be NaN, where they are unknown.
 
+use crate::common::models::{self, dense};
+use crate::common::{amplitude_range, harmonics, omega_range};
 use crate::random_problems::random::Random;
 use hbvib::{
-    Branch, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, ModeField, ModeOptions, Model, Progress,
-    SolverOptions, Status, forced_response, nonlinear_mode,
+    Branch, Contact, ForcedOptions, Hooks, ModeField, ModeOptions, Model, Progress, SolverOptions, Status,
+    forced_response, nonlinear_mode,
 };
 use num_complex::Complex64;
 
@@ -13,22 +15,7 @@ fn model(random: &mut Random) -> Model {
     let n = 1 + random.below(4);
     let (k, length) = (random.decade(-20.0, 20.0), random.decade(-20.0, 20.0));
     let force = k * length;
-    let (mut stiffness, mut mass) = (vec![0.0; n * n], vec![0.0; n * n]);
-    for i in 0..n {
-        stiffness[i * n + i] = 2.0 * k;
-        mass[i * n + i] = k;
-        if i > 0 {
-            stiffness[i * n + i - 1] = -k;
-            stiffness[(i - 1) * n + i] = -k;
-        }
-    }
-    let mut model = Model::new(n).unwrap();
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &mass))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &stiffness))
-        .unwrap();
+    let mut model = models::chain(&vec![k; n], &vec![k; n + 1]).build();
     if random.happens(0.5) {
         model.set_rayleigh(0.0, random.decade(-12.0, -1.0)).unwrap();
     }
@@ -137,25 +124,15 @@ fn every_stored_number_is_finite() {
         let random = &mut Random::of(16, case);
         let model = model(random);
         let solver = SolverOptions {
-            harmonics: [1, 3, 7][random.below(3)],
-            tolerance: 0.0,
             max_points: 150,
             step_max: [0.0, 1.0, 1e6][random.below(3)],
             step_min: [0.0, 1e-3][random.below(2)],
             max_newton: [20, 2, 200][random.below(3)],
-            ..SolverOptions::default()
+            ..harmonics([1, 3, 7][random.below(3)])
         };
         let center = random.decade(-1.0, 0.7);
-        let range = ForcedOptions {
-            omega_start: center,
-            omega_stop: center * random.decade(-1.0, 1.0),
-            ..ForcedOptions::default()
-        };
-        let mode = ModeOptions {
-            log10_start: random.within(-25.0, 0.0),
-            log10_stop: random.within(0.0, 25.0),
-            ..ModeOptions::default()
-        };
+        let range = omega_range(center, center * random.decade(-1.0, 1.0));
+        let mode = amplitude_range(random.within(-25.0, 0.0), random.within(0.0, 25.0));
         let hooks = &mut Hooks::default();
         let found = [
             forced_response(&model, &solver, &range, hooks),
@@ -176,17 +153,11 @@ fn every_stored_number_is_finite() {
 #[test]
 fn every_kind_of_branch_is_finite_outside_of_unknown_errors() {
     let chain = |damping: f64, force: f64, contact: &Contact| {
-        let mut model = Model::new(2).unwrap();
-        model
-            .set_matrix(MatrixKind::Mass, &MatrixView::dense(2, &[1.0, 0.0, 0.0, 1.0]))
-            .unwrap();
-        model
-            .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(2, &[2.0, -1.0, -1.0, 2.0]))
-            .unwrap();
-        model.set_rayleigh(0.0, damping).unwrap();
-        model.add_contact(contact).unwrap();
-        model.add_force(0, 1, force.into()).unwrap();
-        model
+        dense(&[1.0, 0.0, 0.0, 1.0], &[2.0, -1.0, -1.0, 2.0])
+            .rayleigh(0.0, damping)
+            .contact(contact)
+            .force(0, 1, force)
+            .build()
     };
     let friction = Contact::jenkins(1, None, 0.5, 1.0, 0.1);
     let stop = Contact::unilateral(Some(1), None, 0.5, 0.2);
@@ -226,13 +197,8 @@ fn every_kind_of_branch_is_finite_outside_of_unknown_errors() {
     ] {
         let at = [0.97];
         let range = ForcedOptions {
-            omega_start: 0.7,
-            omega_stop: 2.0,
             at: &at,
-            guess: None,
-            responses: &[],
-            together: false,
-            ..ForcedOptions::default()
+            ..omega_range(0.7, 2.0)
         };
         let cancelled = || stop_after == 0;
         let mut progress = |p: &Progress| p.point >= stop_after;
@@ -243,10 +209,8 @@ fn every_kind_of_branch_is_finite_outside_of_unknown_errors() {
         };
         let forced = forced_response(&model, &solver, &range, &mut hooks);
         let mode = ModeOptions {
-            log10_start: -2.0,
-            log10_stop: 1.0,
             at: &[0.1],
-            ..ModeOptions::default()
+            ..amplitude_range(-2.0, 1.0)
         };
         let mode = nonlinear_mode(&model, &solver, &mode, &mut hooks);
         for branch in [forced, mode].iter().flatten() {

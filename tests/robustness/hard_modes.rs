@@ -2,15 +2,13 @@
 //! contacts that slide, from any amplitude, at any frequency.
 
 use crate::common::peers::{RANGE, blade_and_ring};
-use crate::common::{harmonics, solve_at, sweep};
-use hbvib::{Branch, Hooks, ModeField, ModeOptions, SolverOptions, Status, nonlinear_mode};
+use crate::common::{amplitude_range, at_dof, harmonics, solve_at, sweep};
+use hbvib::{Branch, Hooks, ModeField, ModeOptions, Status, nonlinear_mode};
 
 fn mode(highest: usize, log10: (f64, f64), at: &[f64]) -> Branch {
     let range = ModeOptions {
-        log10_start: log10.0,
-        log10_stop: log10.1,
         at,
-        ..ModeOptions::default()
+        ..amplitude_range(log10.0, log10.1)
     };
     nonlinear_mode(
         &blade_and_ring(0.0, false),
@@ -73,10 +71,7 @@ fn a_mode_starts_at_any_amplitude() {
 #[test]
 fn every_frequency_is_a_start_where_newton_cycles_from_the_linear_solutions() {
     let model = blade_and_ring(20.0, true);
-    let solver = SolverOptions {
-        response_dof: Some(0),
-        ..harmonics(9)
-    };
+    let solver = at_dof(0, harmonics(9));
     let at: Vec<f64> = (0..=200)
         .map(|i| RANGE.0 + (RANGE.1 - RANGE.0) * f64::from(i) / 200.0)
         .collect();

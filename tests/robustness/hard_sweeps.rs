@@ -2,7 +2,7 @@
 //! begins and ends where it was told to, goes through its points once, and takes few of them.
 
 use crate::common::peers::{RANGE, blade_and_ring, structure};
-use crate::common::{self, Blisk, all_harmonics, harmonics, relative_gap, slip, sweep};
+use crate::common::{self, Blisk, all_harmonics, at_dof, harmonics, omega_range, relative_gap, slip, sweep};
 use hbvib::{Branch, Contact, ForcedOptions, Hooks, Model, SolverOptions, Status, forced_response};
 use std::f64::consts::PI;
 
@@ -87,10 +87,7 @@ fn the_error_of_few_harmonics_is_that_which_others_found() {
     let (from, to) = RANGE;
     let model = blade_and_ring(0.5, true);
     let of = |highest: usize| {
-        let solver = SolverOptions {
-            response_dof: Some(0),
-            ..harmonics(highest)
-        };
+        let solver = at_dof(0, harmonics(highest));
         peak(&sweep(&model, &solver, from, to, &[]))
     };
     let truth = of(255);
@@ -256,13 +253,8 @@ fn a_sweep_starts_again_from_any_of_its_points() {
         let x = all_harmonics(&branch, point);
         let omega = branch.omega_at(point).unwrap();
         let range = ForcedOptions {
-            omega_start: omega,
-            omega_stop: omega,
-            at: &[],
             guess: Some(&x),
-            responses: &[],
-            together: false,
-            ..ForcedOptions::default()
+            ..omega_range(omega, omega)
         };
         let again = forced_response(&model, &harmonics(9), &range, &mut Hooks::default()).unwrap();
         assert_eq!((again.status(), again.points()), (Status::Ok, 1), "point {point}");

@@ -3,13 +3,14 @@
 //! Tests of the suite count the checks of the interrupt, which no busy machine changes; timings are printed. The test
 //! with limits on them is run by tests/deep.sh.
 
-use crate::common::laws;
+use crate::common::models::{chain_stiffness, dense, diagonal, free_end};
 use crate::common::stopping::{Analysis, Lateness, of_branch, of_call, random, stop_when};
+use crate::common::{amplitude_range, at_dof, harmonics, laws, omega_range};
 use hbvib::{
-    Branch, Contact, ContactState, Flexibility, ForcedOptions, Hooks, Interrupt, MatrixKind, MatrixView, ModeChoice,
-    ModeOptions, Model, Phase, PhaseReport, Progress, Result, SolverOptions, Status, SteadyMethod, SynthesisOptions,
-    TimeOptions, VerifyOptions, contact_evaluate_with, estimate_at_with, forced_residual_with, forced_response,
-    nonlinear_mode, synthesise_with, time_response, verify,
+    Branch, Contact, ContactState, Flexibility, Hooks, Interrupt, ModeChoice, ModeOptions, Model, Phase, PhaseReport,
+    Progress, Result, SolverOptions, Status, SteadyMethod, SynthesisOptions, TimeOptions, VerifyOptions,
+    contact_evaluate_with, estimate_at_with, forced_residual_with, forced_response, nonlinear_mode, synthesise_with,
+    time_response, verify,
 };
 use num_complex::Complex64;
 use std::cell::RefCell;
@@ -28,16 +29,7 @@ impl Case {
     /// Unit masses and springs of `k`, fixed at one end and forced at the other.
     fn chain(name: &'static str, n: usize, contacts: usize, full: bool) -> Self {
         let k = 0.25 * (n * n) as f64;
-        let mut stiffness = vec![0.0; n * n];
-        let mut mass = vec![0.0; n * n];
-        for i in 0..n {
-            stiffness[i * n + i] = if i + 1 < n { 2.0 * k } else { k };
-            mass[i * n + i] = 1.0;
-            if i > 0 {
-                stiffness[i * n + i - 1] = -k;
-                stiffness[(i - 1) * n + i] = -k;
-            }
-        }
+        let mut mass = diagonal(&vec![1.0; n]);
         if full {
             // A full matrix of rank one hardly changes the modes.
             for (at, m) in mass.iter_mut().enumerate() {
@@ -45,14 +37,9 @@ impl Case {
                 *m += 1e-3 / n as f64 * wave(at / n) * wave(at % n);
             }
         }
-        let mut model = Model::new(n).unwrap();
-        model
-            .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &stiffness))
-            .unwrap();
-        model
-            .set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &mass))
-            .unwrap();
-        model.set_rayleigh(0.01, 1e-5).unwrap();
+        let mut model = dense(&mass, &chain_stiffness(&free_end(n, k)))
+            .rayleigh(0.01, 1e-5)
+            .build();
         for i in 0..contacts {
             let at = 1 + i * (n - 2) / contacts;
             model.add_contact(&Contact::jenkins(at, None, 0.5, 1.0, 0.02)).unwrap();
@@ -69,29 +56,18 @@ impl Case {
     }
 
     fn fixed(&self) -> SolverOptions {
-        SolverOptions {
-            harmonics: 5,
-            tolerance: 0.0,
-            response_dof: Some(self.model.ndof() - 1),
-            ..SolverOptions::default()
-        }
+        at_dof(self.model.ndof() - 1, harmonics(5))
     }
 
     fn forced(&self, solver: &SolverOptions, ends: (f64, f64), hooks: &mut Hooks<'_>) -> Result<Branch> {
-        let range = ForcedOptions {
-            omega_start: ends.0 * self.omega,
-            omega_stop: ends.1 * self.omega,
-            ..ForcedOptions::default()
-        };
+        let range = omega_range(ends.0 * self.omega, ends.1 * self.omega);
         forced_response(&self.model, solver, &range, hooks)
     }
 
     fn mode(&self, hooks: &mut Hooks<'_>) -> Result<Branch> {
         let range = ModeOptions {
             choice: ModeChoice::Index(0),
-            log10_start: -2.0,
-            log10_stop: 1.0,
-            ..ModeOptions::default()
+            ..amplitude_range(-2.0, 1.0)
         };
         nonlinear_mode(&self.model, &self.fixed(), &range, hooks)
     }

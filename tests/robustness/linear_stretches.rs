@@ -1,7 +1,8 @@
 //! Sweeps while every contact is linear: peaks against the closed form of modal superposition, at any damping.
 
+use crate::common::models::chain_stiffness;
 use crate::common::peers::structure;
-use crate::common::{harmonics, sweep};
+use crate::common::{at_dof, harmonics, sweep};
 use crate::random_problems::random::Random;
 use core::ops::Range;
 use hbvib::internals::eigen;
@@ -103,14 +104,7 @@ fn chain(number: u64, damping: f64) -> (Model, Modal, usize) {
     let n = 3 + random.below(5);
     let springs: Vec<f64> = (0..=n).map(|_| random.decade(-0.5, 0.5)).collect();
     let mass = DMatrix::from_fn(n, n, |i, j| if i == j { random.decade(-0.3, 0.3) } else { 0.0 });
-    let mut stiffness = DMatrix::<f64>::zeros(n, n);
-    for i in 0..n {
-        stiffness[(i, i)] = springs[i] + springs[i + 1];
-        if i > 0 {
-            stiffness[(i, i - 1)] = -springs[i];
-            stiffness[(i - 1, i)] = -springs[i];
-        }
-    }
+    let stiffness = DMatrix::from_vec(n, n, chain_stiffness(&springs));
     let contact = random.happens(0.7).then(|| (random.below(n), random.decade(-0.5, 0.5)));
     let mut stuck = stiffness.clone();
     if let Some((dof, kt)) = contact {
@@ -196,10 +190,7 @@ fn sweep_chains(numbers: Range<u64>) {
         for number in numbers.clone() {
             let (model, modal, response) = chain(number, damping);
             let range = (0.6 * modal.omega[0], 1.2 * modal.omega[modal.omega.len() - 1]);
-            let solver = SolverOptions {
-                response_dof: Some(response),
-                ..SolverOptions::default()
-            };
+            let solver = at_dof(response, SolverOptions::default());
             for (from, to) in [range, (range.1, range.0)] {
                 let branch = sweep(&model, &solver, from, to, &[]);
                 let name = format!("chain {number}, damping {damping}, from {from}");
@@ -234,10 +225,7 @@ fn close_and_many_resonances_are_all_found() {
         for damping in [1e-2_f64, 1e-4, 1e-6] {
             let omega: Vec<f64> = (0..count).map(|i| 1.0 + gap * f64::from(i)).collect();
             let (model, modal, response) = of_modes(&omega, damping, &mut random);
-            let solver = SolverOptions {
-                response_dof: Some(response),
-                ..harmonics(3)
-            };
+            let solver = at_dof(response, harmonics(3));
             let range = (0.9, 1.1 + gap * f64::from(count));
             let branch = sweep(&model, &solver, range.0, range.1, &[]);
             // The matrices are products of rotations: the modes that they stand for are off by their rounding.

@@ -1,6 +1,7 @@
 //! Contacts that are nearly rigid against the structure: with fixed harmonics every sweep ends at its end, and the
 //! forces of its points balance to what rounding leaves, whatever the stiffness, the structure and the units.
 
+use crate::common::models::{Structure, chain_stiffness, diagonal};
 use crate::common::{harmonics, sweep};
 use crate::random_problems::random::Random;
 use hbvib::{
@@ -20,28 +21,19 @@ struct Chain {
 
 fn chain(random: &mut Random, masses: usize, (force, length): (f64, f64), cyclic: bool) -> Chain {
     let stiffness = force / length;
-    let (mut k, mut m) = (vec![0.0; masses * masses], vec![0.0; masses * masses]);
-    for i in 0..masses {
-        let spring = stiffness * random.within(0.5, 2.0);
-        k[i * masses + i] += spring;
-        if i > 0 {
-            k[(i - 1) * masses + i - 1] += spring;
-            k[i * masses + i - 1] -= spring;
-            k[(i - 1) * masses + i] -= spring;
-        }
-        m[i * masses + i] = stiffness * random.within(0.5, 2.0);
-    }
+    let draw = |_| (stiffness * random.within(0.5, 2.0), stiffness * random.within(0.5, 2.0));
+    let (mut springs, mass): (Vec<_>, Vec<_>) = (0..masses).map(draw).unzip();
+    springs.push(0.0);
+    let (mut k, m) = (chain_stiffness(&springs), diagonal(&mass));
     let mut model = if cyclic {
         let link = 0.3 * stiffness;
         let mut next = vec![0.0; masses * masses];
         next[masses * masses - 1] = -link;
         k[masses * masses - 1] += 2.0 * link;
-        let mut model = Model::cyclic(masses, 12).unwrap();
-        model
-            .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(masses, &next))
-            .unwrap();
-        model.set_wave(1 + random.below(4) as i64);
-        model
+        Structure::cyclic(masses, 12)
+            .next(MatrixKind::Stiffness, &next)
+            .wave(1 + random.below(4) as i64)
+            .build()
     } else {
         Model::new(masses).unwrap()
     };

@@ -1,41 +1,27 @@
 //! Near-rigid contacts that really slip, with a tolerance, against integration in time from event to event
 //! (relative error below 1e-8; rigid Coulomb friction from a separate program, which 2e6 and 4e8 meet within 4e-5).
 
-use crate::common::{all_harmonics, harmonics, sweep};
+use crate::common::models::{Structure, dense, unit_chain};
+use crate::common::{all_harmonics, amplitude_range, at_dof, harmonics, omega_range, sweep};
 use hbvib::{
-    Branch, Contact, ContactState, ForcedOptions, Hooks, MatrixKind, MatrixView, ModeOptions, Model, SolverOptions,
-    Status, VerifyOptions, forced_response, nonlinear_mode, verify,
+    Branch, Contact, ContactState, Hooks, MatrixKind, MatrixView, Model, SolverOptions, Status, VerifyOptions,
+    forced_response, nonlinear_mode, verify,
 };
 use num_complex::Complex64;
 
 const MASSES: usize = 8;
 
 fn solver() -> SolverOptions {
-    SolverOptions {
-        response_dof: Some(0),
-        ..SolverOptions::default()
-    }
+    at_dof(0, SolverOptions::default())
 }
 
 /// Eight masses 1 between springs 1, held at both ends, with a slider of stiffness `kt` at the fifth.
 fn chain(kt: f64) -> Model {
-    let (mut k, mut m) = (vec![0.0; MASSES * MASSES], vec![0.0; MASSES * MASSES]);
-    for i in 0..MASSES {
-        k[i * MASSES + i] = 2.0;
-        m[i * MASSES + i] = 1.0;
-        if i > 0 {
-            k[i * MASSES + i - 1] = -1.0;
-            k[(i - 1) * MASSES + i] = -1.0;
-        }
-    }
-    let mut model = Model::new(MASSES).unwrap();
-    for (kind, matrix) in [(MatrixKind::Mass, &m), (MatrixKind::Stiffness, &k)] {
-        model.set_matrix(kind, &MatrixView::dense(MASSES, matrix)).unwrap();
-    }
-    model.set_rayleigh(0.02, 0.0).unwrap();
-    model.add_contact(&Contact::jenkins(4, None, kt, 0.3, 1.0)).unwrap();
-    model.add_force(0, 1, 0.2.into()).unwrap();
-    model
+    unit_chain(MASSES)
+        .rayleigh(0.02, 0.0)
+        .slider(4, kt, 0.3, 1.0)
+        .force(0, 1, 0.2)
+        .build()
 }
 
 fn fundamental(branch: &Branch, point: usize) -> Complex64 {
@@ -166,11 +152,7 @@ fn a_rigid_slider_is_the_limit_of_stiff_ones() {
                     _ => 0.0,
                 };
                 let stiffness: Vec<f64> = (0..n * n).map(spring).collect();
-                let mut model = Model::new(n).unwrap();
-                for (kind, matrix) in [(MatrixKind::Mass, &own), (MatrixKind::Stiffness, &stiffness)] {
-                    model.set_matrix(kind, &MatrixView::dense(n, matrix)).unwrap();
-                }
-                model.set_rayleigh(0.02, 1e-3).unwrap();
+                let mut model = dense(&own, &stiffness).rayleigh(0.02, 1e-3).build();
                 for k in 0..count {
                     let contact = Contact::jenkins(n / 2 + 2 * k, None, kt, 0.3, 0.5);
                     model.add_contact(&contact).unwrap();
@@ -197,11 +179,7 @@ fn a_rigid_slider_is_the_limit_of_stiff_ones() {
 #[test]
 fn a_rigid_slider_is_refused_elsewhere() {
     let model = chain(f64::INFINITY);
-    let range = ForcedOptions {
-        omega_start: 0.5,
-        omega_stop: 0.6,
-        ..ForcedOptions::default()
-    };
+    let range = omega_range(0.5, 0.6);
     let refused = |text: String| assert!(text.contains("contact 0") && text.contains("kt = inf"), "{text}");
     let fixed = SolverOptions {
         samples: 64,
@@ -209,11 +187,7 @@ fn a_rigid_slider_is_refused_elsewhere() {
     };
     let found = forced_response(&model, &fixed, &range, &mut Hooks::default());
     refused(found.err().unwrap().to_string());
-    let mode_range = ModeOptions {
-        log10_start: -2.0,
-        log10_stop: 0.0,
-        ..ModeOptions::default()
-    };
+    let mode_range = amplitude_range(-2.0, 0.0);
     let mode = nonlinear_mode(&model, &harmonics(3), &mode_range, &mut Hooks::default());
     refused(mode.err().unwrap().to_string());
     let branch = sweep(&model, &harmonics(15), 0.6, 0.6, &[]);
@@ -241,18 +215,13 @@ fn a_rigid_slider_is_refused_elsewhere() {
 
 /// A ring of 24 blades, each with a rigid slider to the next one, under an engine order.
 fn blades(engine_order: i64, kt: f64, preload: f64) -> Model {
-    let mut model = Model::cyclic(2, 24).unwrap();
-    for (kind, matrix) in [
-        (MatrixKind::Mass, [1.0, 0.0, 0.0, 1.5]),
-        (MatrixKind::Stiffness, [1.0, -1.0, -1.0, 5.0]),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(2, &matrix)).unwrap();
-    }
-    model
-        .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(2, &[0.0, 0.0, 0.0, -1.0]))
-        .unwrap();
-    model.set_wave(engine_order);
-    model.set_rayleigh(0.0, 0.02).unwrap();
+    let mut model = Structure::cyclic(2, 24)
+        .mass(&[1.0, 0.0, 0.0, 1.5])
+        .stiffness(&[1.0, -1.0, -1.0, 5.0])
+        .next(MatrixKind::Stiffness, &[0.0, 0.0, 0.0, -1.0])
+        .wave(engine_order)
+        .rayleigh(0.0, 0.02)
+        .build();
     if kt > 0.0 {
         let mut contact = Contact::jenkins(0, Some(0), kt, 0.4, preload);
         contact.sector_offset = 1;
@@ -266,10 +235,7 @@ fn blades(engine_order: i64, kt: f64, preload: f64) -> Model {
 /// equation was singular.
 #[test]
 fn rigid_sliders_between_blades_that_move_alike_have_a_solution() {
-    let solver = SolverOptions {
-        response_dof: Some(1),
-        ..harmonics(9)
-    };
+    let solver = at_dof(1, harmonics(9));
     let solved = |model: &Model| {
         let branch = sweep(model, &solver, 1.3, 2.6, &[1.7]);
         assert_eq!(branch.status(), Status::Ok);

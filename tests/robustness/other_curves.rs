@@ -3,7 +3,7 @@
 
 use crate::common::depth::some_of;
 use crate::common::peers::structure;
-use crate::common::{harmonics, sweep};
+use crate::common::{harmonics, omega_range, sweep};
 use crate::random_problems::random::Random;
 use hbvib::{Contact, ForcedOptions, Hooks, SolverOptions, Waves, forced_response};
 use std::time::Instant;
@@ -44,10 +44,8 @@ fn chains_with_sliders_alone_have_no_other_curve() {
         let range = (0.15, random.within(0.6, 1.9));
         let clock = Instant::now();
         let sought_too = ForcedOptions {
-            omega_start: range.0,
-            omega_stop: range.1,
             branches: 2,
-            ..ForcedOptions::default()
+            ..omega_range(range.0, range.1)
         };
         let found = forced_response(&model, &harmonics(5), &sought_too, &mut Hooks::default()).unwrap();
         with += clock.elapsed().as_secs_f64();

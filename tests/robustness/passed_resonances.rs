@@ -2,25 +2,21 @@
 //! steps of 1e-3 find.
 
 use crate::common::depth::some_of;
-use crate::common::peers::structure;
-use crate::common::{harmonics, sweep};
+use crate::common::models;
+use crate::common::{at_dof, harmonics, sweep};
 use crate::random_problems::random::Random;
 use hbvib::{Branch, Contact, Model, SolverOptions, Special, Status};
-use nalgebra::DMatrix;
 
 /// Masses on springs, the first spring to the ground, with stiffness-proportional damping.
 fn chain(masses: &[f64], springs: &[f64], damping: f64) -> Model {
+    let springs: Vec<f64> = (0..=masses.len())
+        .map(|i| springs.get(i).copied().unwrap_or(0.0))
+        .collect();
     let n = masses.len();
-    let at = |i: usize| springs.get(i).copied().unwrap_or(0.0);
-    let stiffness = DMatrix::from_fn(n, n, |i, j| match i.abs_diff(j) {
-        0 => at(i) + at(i + 1),
-        1 => -at(i.max(j)),
-        _ => 0.0,
-    });
-    let mass = DMatrix::from_fn(n, n, |i, j| if i == j { masses[i] } else { 0.0 });
-    let mut model = structure(mass.as_slice(), &vec![0.0; n * n], stiffness.as_slice());
-    model.set_rayleigh(0.0, damping).unwrap();
-    model
+    models::chain(masses, &springs)
+        .damping(&vec![0.0; n * n])
+        .rayleigh(0.0, damping)
+        .build()
 }
 
 /// The highest peak.
@@ -39,10 +35,7 @@ fn a_harmonic_of_a_slider_resonates_within_a_step() {
     model.add_contact(&Contact::jenkins(2, None, 0.3, 0.05, 1.0)).unwrap();
     model.add_force(4, 1, 0.02.into()).unwrap();
     let with = |solver: SolverOptions, upward: bool| {
-        let solver = SolverOptions {
-            response_dof: Some(4),
-            ..solver
-        };
+        let solver = at_dof(4, solver);
         let (from, to) = if upward { (0.8, 1.1) } else { (1.1, 0.8) };
         highest(&sweep(&model, &solver, from * first, to * first, &[]))
     };
@@ -110,10 +103,7 @@ fn the_peaks_of_light_chains_are_those_of_short_steps() {
     let (mut peaks, mut missed, mut points) = (0, 0, (0, 0));
     for number in 0..some_of(25, 80) {
         let (model, (from, to), response) = random_chain(number);
-        let solver = SolverOptions {
-            response_dof: Some(response),
-            ..harmonics(9)
-        };
+        let solver = at_dof(response, harmonics(9));
         let found = sweep(&model, &solver, from, to, &[]);
         let fine = SolverOptions {
             step_max: 1e-3,

@@ -1,7 +1,8 @@
 //! Chains of 34 to 74 masses with other than proportional damping and contacts of four laws: true errors against the tolerance.
 
+use crate::common::models::{chain_stiffness, diagonal};
 use crate::common::peers::structure;
-use crate::common::{all_harmonics, harmonics, sweep};
+use crate::common::{all_harmonics, at_dof, harmonics, omega_range, sweep};
 use crate::random_problems::random::{Random, from_environment};
 use hbvib::internals::eigen;
 use hbvib::{Branch, Contact, ForcedOptions, Hooks, Interrupt, Model, SolverOptions, forced_response};
@@ -27,16 +28,9 @@ struct Case {
 fn case(number: u64) -> Case {
     let mut random = Random::of(from_environment("HBVIB_SEED", 29), number);
     let n = 34 + random.below(41);
-    let [mut mass, mut stiffness] = [(); 2].map(|()| vec![0.0; n * n]);
     let springs: Vec<f64> = (0..=n).map(|_| 1e4 * random.within(0.5, 2.0)).collect();
-    for i in 0..n {
-        mass[i * (n + 1)] = random.within(0.5, 2.0);
-        stiffness[i * (n + 1)] = springs[i] + springs[i + 1];
-        if i > 0 {
-            stiffness[i * n + i - 1] = -springs[i];
-            stiffness[(i - 1) * n + i] = -springs[i];
-        }
-    }
+    let mass: Vec<f64> = (0..n).map(|_| random.within(0.5, 2.0)).collect();
+    let (mass, stiffness) = (diagonal(&mass), chain_stiffness(&springs));
     let beta = random.decade(-5.0, -3.5);
     let mut damping: Vec<f64> = stiffness.iter().map(|k| beta * k).collect();
     for _ in 0..3 {
@@ -86,18 +80,10 @@ fn truth(case: &Case, branch: &Branch, point: usize) -> Option<Complex64> {
     let mut guess = all_harmonics(branch, point);
     guess.resize((TRUTH + 1) * case.model.ndof(), Complex64::ZERO);
     let range = ForcedOptions {
-        omega_start: omega,
-        omega_stop: omega,
-        at: &[],
         guess: Some(&guess),
-        responses: &[],
-        together: false,
-        ..ForcedOptions::default()
+        ..omega_range(omega, omega)
     };
-    let solver = SolverOptions {
-        response_dof: Some(case.response),
-        ..harmonics(TRUTH)
-    };
+    let solver = at_dof(case.response, harmonics(TRUTH));
     let found = forced_response(&case.model, &solver, &range, &mut Hooks::default()).ok()?;
     fundamental(&found, 0)
 }

@@ -9,7 +9,7 @@ mod caller;
 mod cpu_time;
 mod model;
 
-use crate::common::harmonics;
+use crate::common::{at_dof, harmonics, omega_range};
 use crate::random_problems::random::from_environment;
 use cpu_time::cpu_seconds;
 use hbvib::{Branch, Error, ForcedOptions, Hooks, SolverOptions, Status, VerifyOptions, forced_response, verify};
@@ -63,10 +63,8 @@ impl Cost {
 /// The solution of a case with its cost.
 fn solve(case: &Case, solver: &SolverOptions, guess: Option<&[Complex64]>) -> (Result<Branch, Error>, Cost) {
     let range = ForcedOptions {
-        omega_start: case.omega,
-        omega_stop: case.omega,
         guess,
-        ..ForcedOptions::default()
+        ..omega_range(case.omega, case.omega)
     };
     let (checks, started) = (Cell::new(0), cpu_seconds());
     let count = || {
@@ -124,10 +122,7 @@ fn error_in_harmonics(case: &Case, branch: &Branch) -> Option<f64> {
     let begin = Instant::now();
     while highest <= MOST_HARMONICS && begin.elapsed() < LONGEST / 4 {
         x.resize((highest + 1) * branch.ndof(), Complex64::ZERO);
-        let solver = SolverOptions {
-            response_dof: Some(dof),
-            ..harmonics(highest)
-        };
+        let solver = at_dof(dof, harmonics(highest));
         let found = solve(case, &solver, Some(&x))
             .0
             .ok()

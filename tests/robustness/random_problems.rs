@@ -12,7 +12,7 @@ pub mod random;
 mod residual;
 
 use crate::common::depth::some_of;
-use crate::common::{all_harmonics, harmonics, relative_gap};
+use crate::common::{all_harmonics, harmonics, omega_range, relative_gap};
 use hbvib::{Branch, Error, ForcedOptions, Hooks, SolverOptions, Status, TimeOptions, forced_response, time_response};
 use law::LAWS;
 use num_complex::Complex64;
@@ -44,11 +44,7 @@ fn cases() -> u64 {
 
 /// A cold start at the frequency of a case, and what the log says of it.
 fn cold_start(case: &Case, solver: &SolverOptions) -> (Result<Branch, Error>, String) {
-    let range = ForcedOptions {
-        omega_start: case.omega,
-        omega_stop: case.omega,
-        ..ForcedOptions::default()
-    };
+    let range = omega_range(case.omega, case.omega);
     let mut reported = String::new();
     let mut log = |_, line: &str| reported = line.to_string();
     let mut hooks = Hooks {
@@ -69,10 +65,8 @@ fn holds_with_more_samples(case: &Case, x: &[Complex64]) -> bool {
         ..harmonics(H)
     };
     let range = ForcedOptions {
-        omega_start: case.omega,
-        omega_stop: case.omega,
         guess: Some(x),
-        ..ForcedOptions::default()
+        ..omega_range(case.omega, case.omega)
     };
     forced_response(&case.model(), &solver, &range, &mut Hooks::default()).is_ok_and(|branch| {
         let r = Residual::of(case, &all_harmonics(&branch, 0), BOUND);
@@ -226,11 +220,7 @@ fn sweeps_through_one_resonance_reach_their_end() {
         let case = Case::single(seed(), number, law);
         let (low, high) = (0.3, case.top());
         let (from, to) = if number % 2 == 0 { (low, high) } else { (high, low) };
-        let range = ForcedOptions {
-            omega_start: from,
-            omega_stop: to,
-            ..ForcedOptions::default()
-        };
+        let range = omega_range(from, to);
         let found = forced_response(&case.model(), &harmonics(H), &range, &mut Hooks::default());
         let law = LAWS[law];
         match found {

@@ -1,7 +1,8 @@
 //! Solutions at requested frequencies: each within a covered range has one, though a step went over a bulge or two folds there.
 
-use crate::common::{all_harmonics, harmonics, sweep};
-use hbvib::{Contact, MatrixKind, MatrixView, Model, SolverOptions, Status};
+use crate::common::models::dense;
+use crate::common::{all_harmonics, at_dof, harmonics, sweep};
+use hbvib::{Contact, Model, Status};
 
 /// Three masses with two stops that are open at rest, and a loss factor.
 fn model() -> Model {
@@ -10,11 +11,7 @@ fn model() -> Model {
     let own = [3.640_300_548_877_61, 3.463_051_828_866_046_6, 3.045_414_799_541_367];
     let m = [mass[0], 0.0, 0.0, 0.0, mass[1], 0.0, 0.0, 0.0, mass[2]];
     let k = [own[0], first, 0.0, first, own[1], second, 0.0, second, own[2]];
-    let mut model = Model::new(3).unwrap();
-    for (kind, matrix) in [(MatrixKind::Mass, &m), (MatrixKind::Stiffness, &k)] {
-        model.set_matrix(kind, &MatrixView::dense(3, matrix)).unwrap();
-    }
-    model.set_loss_factor(0.005).unwrap();
+    let mut model = dense(&m, &k).loss_factor(0.005).build();
     for dof in [0, 1] {
         model
             .add_contact(&Contact::unilateral(Some(dof), None, 0.5, 0.3))
@@ -27,10 +24,7 @@ fn model() -> Model {
 /// A downward sweep had no solution at the last of these, where single frequencies have 0.533 674 45.
 #[test]
 fn every_requested_frequency_has_a_solution() {
-    let solver = SolverOptions {
-        response_dof: Some(2),
-        ..harmonics(5)
-    };
+    let solver = at_dof(2, harmonics(5));
     let (model, lost) = (model(), 0.817_294_558_272_533_3);
     let mut at: Vec<f64> = (0..60).map(|i| 0.74 + 0.03 * f64::from(i)).collect();
     at.push(lost);

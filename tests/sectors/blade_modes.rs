@@ -1,11 +1,12 @@
 //! A sector on the cantilever modes of its blade against the sector in full: tuned frequencies with the told error, a mistuned wheel with
 //! friction, and sectors that cannot be reduced.
 
+use crate::common::models::{Structure, diagonal};
 use crate::common::refusal::refused;
-use crate::common::{all_harmonics, harmonics, solve_at};
+use crate::common::{all_harmonics, harmonics, omega_range, solve_at};
 use hbvib::{
-    BladeProperty, Contact, ContactState, ForcedOptions, Hooks, Interrupt, MatrixKind, MatrixView, Mistuning, Model,
-    Response, Status, forced_response,
+    BladeProperty, ContactState, ForcedOptions, Hooks, Interrupt, MatrixKind, Mistuning, Model, Response, Status,
+    forced_response,
 };
 use num_complex::Complex64;
 
@@ -15,8 +16,7 @@ const SECTORS: usize = 6;
 const DELTA: [f64; SECTORS] = [0.03, -0.05, 0.01, 0.04, -0.02, -0.015];
 
 fn sector() -> Model {
-    let mut model = Model::cyclic(N, SECTORS).unwrap();
-    let (mut k, mut m) = (vec![0.0; N * N], vec![0.0; N * N]);
+    let mut k = vec![0.0; N * N];
     let mut spring = |a: usize, b: usize, v: f64| {
         for (i, j, sign) in [(a, a, 1.0), (b, b, 1.0), (a, b, -1.0), (b, a, -1.0)] {
             k[N * i + j] += sign * v;
@@ -29,26 +29,25 @@ fn sector() -> Model {
     // The blade is also tied to the other mass of the disk.
     spring(0, 2, 5.0);
     k[0] += 20.0 + 2.0 * 8.0;
-    for (i, m) in m.iter_mut().step_by(N + 1).enumerate() {
-        *m = if i < 2 { 3.0 } else { 0.3 + 0.01 * i as f64 };
-    }
+    let masses: Vec<f64> = (0..N)
+        .map(|i| if i < 2 { 3.0 } else { 0.3 + 0.01 * i as f64 })
+        .collect();
+    let mut m = diagonal(&masses);
     // A mass that blade and disk share.
     m[N + 2] = 0.05;
     m[2 * N + 1] = 0.05;
-    for (kind, a) in [(MatrixKind::Mass, &m), (MatrixKind::Stiffness, &k)] {
-        model.set_matrix(kind, &MatrixView::dense(N, a)).unwrap();
-    }
     let mut next = vec![0.0; N * N];
     next[0] = -8.0;
-    model
-        .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(N, &next))
-        .unwrap();
-    model.set_rayleigh(0.01, 1e-3).unwrap();
-    model.set_wave(2);
-    model.add_contact(&Contact::jenkins(1, None, 3.0, 0.3, 0.2)).unwrap();
-    model.add_force(N - 1, 1, Complex64::new(0.02, 0.01)).unwrap();
-    model.add_force(0, 1, 0.01.into()).unwrap();
-    model
+    Structure::cyclic(N, SECTORS)
+        .mass(&m)
+        .stiffness(&k)
+        .next(MatrixKind::Stiffness, &next)
+        .rayleigh(0.01, 1e-3)
+        .wave(2)
+        .slider(1, 3.0, 0.3, 0.2)
+        .force(N - 1, 1, Complex64::new(0.02, 0.01))
+        .force(0, 1, 0.01)
+        .build()
 }
 
 fn blade() -> Vec<usize> {
@@ -115,10 +114,8 @@ fn tips(sector: &Model, dofs: &[usize], tip: (&[usize], &[f64])) -> Vec<f64> {
     let mut all = Vec::new();
     for factor in [0.97, 1.0, 1.02] {
         let range = ForcedOptions {
-            omega_start: factor * tuned,
-            omega_stop: factor * tuned,
             responses: &responses,
-            ..ForcedOptions::default()
+            ..omega_range(factor * tuned, factor * tuned)
         };
         let found = forced_response(&wheel, &harmonics(3), &range, &mut Hooks::default()).unwrap();
         all.extend(found.responses().iter().map(|one| one.values()[0]));

@@ -1,5 +1,6 @@
 //! A small finite-element sector with both faces: 36 nodes, curved faces, no mirror symmetry.
 
+use crate::common::models::sector_of_faces;
 use hbvib::internals::Positions;
 use hbvib::{MatrixKind, MatrixView, Model, SectorDescription, SectorFrame};
 use nalgebra::DMatrix;
@@ -134,17 +135,11 @@ impl BoundarySector {
         let [left, right] = [&self.left, &self.right].map(|face| dofs(face).into_iter().map(Some).collect::<Vec<_>>());
         let fixed = dofs(&self.clamped);
         let mut description = SectorDescription {
-            ndof: self.ndof(),
-            sectors: N,
             engine_order,
-            components: 3,
-            left: &left,
-            right: &right,
             fixed: &fixed,
             frame: self.frame,
-            axis: [0.0, 0.0, 1.0],
-            forward: true,
             coordinates,
+            ..sector_of_faces(self.ndof(), N, [&left, &right])
         };
         change(&mut description);
         let mut model = Model::sector(&description)?;

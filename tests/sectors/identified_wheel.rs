@@ -1,9 +1,11 @@
 //! The pattern of a wheel from its modes: those of the mistuned wheel as a plain model are the measurement.
 
+use crate::common::models::Structure;
+use crate::common::random;
 use crate::common::refusal::refused;
 use hbvib::{
-    BladeProperty, Contact, ContactState, IdentifiedPattern, Interrupt, LinearContacts, LinearModes, MatrixKind,
-    MatrixView, MeasuredModes, Mistuning, Model, Result, Status, wheel_identify,
+    BladeProperty, ContactState, IdentifiedPattern, Interrupt, LinearContacts, LinearModes, MatrixKind, MatrixView,
+    MeasuredModes, Mistuning, Model, Result, Status, wheel_identify,
 };
 use num_complex::Complex64;
 
@@ -12,17 +14,14 @@ const DELTA: [f64; N] = [0.012, -0.02, 0.007, 0.001, -0.013, 0.016, -0.004, 0.00
 
 /// Blade and disk, and a ring that sticks to the disk.
 fn sector(sectors: usize) -> Model {
-    let mut model = Model::cyclic(2, sectors).unwrap();
     let (mass, own, next) = ([1.0, 0.0, 0.0, 2.0], [1.0, -1.0, -1.0, 5.2], [0.0, 0.0, 0.0, -2.0]);
-    for (kind, matrix) in [(MatrixKind::Mass, &mass), (MatrixKind::Stiffness, &own)] {
-        model.set_matrix(kind, &MatrixView::dense(2, matrix)).unwrap();
-    }
-    model
-        .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(2, &next))
-        .unwrap();
-    model.set_wave(2);
-    model.add_contact(&Contact::jenkins(1, None, 0.5, 0.3, 0.1)).unwrap();
-    model
+    Structure::cyclic(2, sectors)
+        .mass(&mass)
+        .stiffness(&own)
+        .next(MatrixKind::Stiffness, &next)
+        .wave(2)
+        .slider(1, 0.5, 0.3, 0.1)
+        .build()
 }
 
 /// The modes of the mistuned wheel.
@@ -143,11 +142,7 @@ struct Deviates(u64);
 
 impl Deviates {
     fn uniform(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+        random::unit(&mut self.0) + 0.5 / (1_u64 << 53) as f64
     }
 
     fn normal(&mut self) -> f64 {

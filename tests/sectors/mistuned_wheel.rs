@@ -1,8 +1,9 @@
 //! The whole wheel of a cyclic model, tuned and mistuned: a bladed disk of 24 sectors with a friction ring. Against the
 //! wave of the sector, another harmonic balance of the wheel, its integration in time, and clamped blades.
 
+use crate::common::models::Structure;
 use crate::common::refusal::refused;
-use crate::common::{all_harmonics, harmonics, relative_gap, slip, solve_at, sweep};
+use crate::common::{all_harmonics, at_dof, harmonics, omega_range, relative_gap, slip, solve_at, sweep};
 use hbvib::internals::Block;
 use hbvib::{
     BladeProperty, Contact, ContactState, ForcedOptions, Hooks, MatrixKind, MatrixView, Mistuning, Model, Response,
@@ -17,7 +18,6 @@ const PRELOAD: f64 = 488.545_417_853_923_3;
 
 /// Blade tip, blade root, disk and ring.
 fn sector(force: f64) -> Model {
-    let mut model = Model::cyclic(4, N).unwrap();
     let (root, disk, ground, ring) = (1e6, 5e7, 6e5, 2e7);
     let mut k = [0.0; 16];
     let mut spring = |a: usize, b: usize, v: f64| {
@@ -31,21 +31,15 @@ fn sector(force: f64) -> Model {
     k[15] += 2.0 * ring;
     let diagonal = |d: [f64; 4]| -> Vec<f64> { (0..16).map(|i| if i % 5 == 0 { d[i / 5] } else { 0.0 }).collect() };
     let mass = diagonal([0.2, 0.3, 1.2, 0.03]);
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(4, &mass))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(4, &k))
-        .unwrap();
     let next = diagonal([0.0, 0.0, -disk, -ring]);
-    model
-        .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(4, &next))
-        .unwrap();
-    model.set_rayleigh(0.0, 1.5e-6).unwrap();
-    model.set_wave(2);
-    model
-        .add_contact(&Contact::jenkins(2, Some(3), 5e7, 0.3, PRELOAD))
-        .unwrap();
+    let mut model = Structure::cyclic(4, N)
+        .mass(&mass)
+        .stiffness(&k)
+        .next(MatrixKind::Stiffness, &next)
+        .rayleigh(0.0, 1.5e-6)
+        .wave(2)
+        .contact(Contact::jenkins(2, Some(3), 5e7, 0.3, PRELOAD))
+        .build();
     for dof in [0, 1] {
         model.add_force(dof, 1, force.into()).unwrap();
     }
@@ -156,10 +150,7 @@ fn the_largest_peak_of_a_mistuned_wheel_is_that_of_another_harmonic_balance() {
         (1.0, 209.955_323_852_347_56, 8.280_100_222_407_677e-4),
         (5.0, 208.825_082_002_718_94, 1.501_565_473_174_983_4e-3),
     ] {
-        let solver = SolverOptions {
-            response_dof: Some(12),
-            ..harmonics(3)
-        };
+        let solver = at_dof(12, harmonics(3));
         let branch = sweep(
             &blades(&SEED_2, force),
             &solver,
@@ -181,11 +172,7 @@ fn the_largest_peak_of_a_mistuned_wheel_is_that_of_another_harmonic_balance() {
 fn all_blades_have_their_peaks_and_the_largest_is_that_of_another_harmonic_balance() {
     let amplitude = 8.280_100_222_407_677e-4;
     let sector = sector(1.0);
-    let range = ForcedOptions {
-        omega_start: TAU * 208.5,
-        omega_stop: TAU * 211.5,
-        ..ForcedOptions::default()
-    };
+    let range = omega_range(TAU * 208.5, TAU * 211.5);
     let blade = Response {
         dofs: &[0],
         ..Response::default()
@@ -333,10 +320,8 @@ fn all_blades_of_a_mistuned_wheel_are_those_of_time_integration_within_the_toler
         ..SolverOptions::default()
     };
     let range = ForcedOptions {
-        omega_start: TAU * 208.8,
-        omega_stop: TAU * 208.8,
         responses: &responses,
-        ..ForcedOptions::default()
+        ..omega_range(TAU * 208.8, TAU * 208.8)
     };
     let branch = forced_response(&wheel, &solver, &range, &mut Hooks::default()).unwrap();
     let x = all_harmonics(&branch, 0);

@@ -1,12 +1,14 @@
 //! Forced responses and modes of a sector with faces against the same sector from K₀ and K₁.
 
 use crate::boundary_sector::{BoundarySector, N, dofs};
+use crate::common::models::{Structure, sector_of_faces};
 use crate::common::refusal::refused;
-use crate::common::{all_harmonics, harmonics, relative_gap, slip, solve_at, sweep};
+use crate::common::{
+    all_harmonics, amplitude_range, at_dof, harmonics, omega_range, relative_gap, slip, solve_at, sweep,
+};
 use hbvib::{
-    Contact, ContactState, ForcedOptions, Hooks, LinearContacts, MatrixKind, MatrixView, ModeChoice, ModeOptions,
-    Model, Part, SectorFrame, SolverOptions, Status, VerifyOptions, forced_residual, forced_response, nonlinear_mode,
-    verify,
+    Contact, ContactState, Hooks, LinearContacts, MatrixKind, MatrixView, ModeChoice, ModeOptions, Model, Part,
+    SectorFrame, SolverOptions, Status, VerifyOptions, forced_residual, forced_response, nonlinear_mode, verify,
 };
 use nalgebra::DMatrix;
 use num_complex::Complex64;
@@ -107,10 +109,7 @@ fn contacts_inside_and_across_the_faces_give_the_response_of_the_sector_from_its
         }
         let natural = reference.linear_modes(3, ContactState::Stuck).unwrap().omega[0];
         for ratio in [0.93, 0.985, 1.02] {
-            let solver = SolverOptions {
-                response_dof: Some(r),
-                ..harmonics(5)
-            };
+            let solver = at_dof(r, harmonics(5));
             let branch = solve_at(&model, &solver, ratio * natural);
             let expected = solve_at(&reference, &harmonics(5), ratio * natural);
             let (x, y) = (all_harmonics(&branch, 0), all_harmonics(&expected, 0));
@@ -141,15 +140,8 @@ fn contacts_inside_and_across_the_faces_give_the_response_of_the_sector_from_its
 #[test]
 fn a_fixed_degree_of_freedom_has_no_response() {
     let (model, _) = lumped(1);
-    let solver = SolverOptions {
-        response_dof: Some(3),
-        ..harmonics(3)
-    };
-    let range = ForcedOptions {
-        omega_start: 0.8,
-        omega_stop: 1.0,
-        ..ForcedOptions::default()
-    };
+    let solver = at_dof(3, harmonics(3));
+    let range = omega_range(0.8, 1.0);
     let words = ["response_dof = 3 is fixed"];
     refused(
         forced_response(&model, &solver, &range, &mut Hooks::default()),
@@ -158,9 +150,7 @@ fn a_fixed_degree_of_freedom_has_no_response() {
     );
     let mode = ModeOptions {
         reference_dof: Some(2),
-        log10_start: -2.0,
-        log10_stop: 0.0,
-        ..ModeOptions::default()
+        ..amplitude_range(-2.0, 0.0)
     };
     let words = ["reference_dof = 2 lies on the right face"];
     refused(
@@ -174,10 +164,7 @@ fn a_fixed_degree_of_freedom_has_no_response() {
 #[test]
 fn the_response_in_time_agrees_on_the_right_face() {
     let (model, right) = lumped(1);
-    let solver = SolverOptions {
-        response_dof: Some(right),
-        ..harmonics(21)
-    };
+    let solver = at_dof(right, harmonics(21));
     let branch = solve_at(&model, &solver, 0.9);
     let options = VerifyOptions::default();
     let found = verify(&model, &branch, 0, &options, &mut Hooks::default()).unwrap();
@@ -194,18 +181,11 @@ fn the_response_in_time_agrees_on_the_right_face() {
 /// Three masses per sector, the last of them the first of the next sector; another one is fixed.
 fn lumped(engine_order: i64) -> (Model, usize) {
     use hbvib::SectorDescription;
-    let mut model = Model::sector(&SectorDescription {
-        ndof: 4,
-        sectors: 6,
+    let model = Model::sector(&SectorDescription {
         engine_order,
         components: 1,
-        left: &[Some(0)],
-        right: &[Some(2)],
         fixed: &[3],
-        frame: SectorFrame::Cylindrical,
-        axis: [0.0, 0.0, 1.0],
-        forward: true,
-        coordinates: None,
+        ..sector_of_faces(4, 6, [&[Some(0)], &[Some(2)]])
     })
     .unwrap();
     let dense = |entries: &[(usize, usize, f64)]| {
@@ -224,21 +204,16 @@ fn lumped(engine_order: i64) -> (Model, usize) {
     let k = springs(&[(0, 1, 1.0), (1, 2, 0.7), (0, 3, 0.5), (1, 3, 0.2)]);
     let c = springs(&[(0, 1, 0.03), (1, 2, 0.02)]);
     let m = dense(&[(0, 0, 0.8), (1, 1, 0.5), (2, 2, 0.4), (3, 3, 1.0)]);
-    for (kind, a) in [
-        (MatrixKind::Stiffness, k),
-        (MatrixKind::Damping, c),
-        (MatrixKind::Mass, m),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(4, &a)).unwrap();
-    }
-    model.add_contact(&Contact::jenkins(1, Some(2), 1.0, 1.0, 0.1)).unwrap();
-    model
-        .add_contact(&Contact {
-            sector_offset: 1,
-            ..Contact::jenkins(1, Some(1), 0.5, 1.0, 0.2)
-        })
-        .unwrap();
-    model.add_force(2, 1, Complex64::new(0.3, 0.1)).unwrap();
+    let across = Contact {
+        sector_offset: 1,
+        ..Contact::jenkins(1, Some(1), 0.5, 1.0, 0.2)
+    };
+    let model = Structure::on(4, model)
+        .matrices([&m, &c, &k])
+        .contact(Contact::jenkins(1, Some(2), 1.0, 1.0, 0.1))
+        .contact(across)
+        .force(2, 1, Complex64::new(0.3, 0.1))
+        .build();
     (model, 2)
 }
 
@@ -280,23 +255,23 @@ fn the_residual_and_its_jacobian_keep_the_numbering_of_the_sector() {
 #[test]
 fn a_nonlinear_mode_is_that_of_the_sector_from_its_blocks() {
     let (model, right) = lumped(1);
-    let mut reference = Model::cyclic(2, 6).unwrap();
-    reference.set_wave(1);
-    for (kind, own, next) in [
-        (MatrixKind::Stiffness, [2.2, -1.0, -1.0, 1.9], [0.0, -0.7, 0.0, 0.0]),
-        (MatrixKind::Damping, [0.05, -0.03, -0.03, 0.05], [0.0, -0.02, 0.0, 0.0]),
-        (MatrixKind::Mass, [1.2, 0.0, 0.0, 0.5], [0.0; 4]),
-    ] {
-        reference.set_matrix(kind, &MatrixView::dense(2, &own)).unwrap();
-        reference.set_coupling(kind, &MatrixView::dense(2, &next)).unwrap();
-    }
-    for (a, b, kt, limit) in [(1, 0, 1.0, 0.1), (1, 1, 0.5, 0.2)] {
-        let contact = Contact {
-            sector_offset: 1,
-            ..Contact::jenkins(a, Some(b), kt, 1.0, limit)
-        };
-        reference.add_contact(&contact).unwrap();
-    }
+    let across = |a: usize, b: usize, kt: f64, limit: f64| Contact {
+        sector_offset: 1,
+        ..Contact::jenkins(a, Some(b), kt, 1.0, limit)
+    };
+    let reference = Structure::cyclic(2, 6)
+        .wave(1)
+        .matrices([
+            &[1.2, 0.0, 0.0, 0.5],
+            &[0.05, -0.03, -0.03, 0.05],
+            &[2.2, -1.0, -1.0, 1.9],
+        ])
+        .next(MatrixKind::Mass, &[0.0; 4])
+        .next(MatrixKind::Damping, &[0.0, -0.02, 0.0, 0.0])
+        .next(MatrixKind::Stiffness, &[0.0, -0.7, 0.0, 0.0])
+        .contact(across(1, 0, 1.0, 0.1))
+        .contact(across(1, 1, 0.5, 0.2))
+        .build();
     let mode = |model: &Model, response_dof| {
         let solver = SolverOptions {
             response_dof,
@@ -304,9 +279,7 @@ fn a_nonlinear_mode_is_that_of_the_sector_from_its_blocks() {
         };
         let range = ModeOptions {
             choice: ModeChoice::Index(1),
-            log10_start: -2.0,
-            log10_stop: 0.5,
-            ..ModeOptions::default()
+            ..amplitude_range(-2.0, 0.5)
         };
         nonlinear_mode(model, &solver, &range, &mut Hooks::default()).unwrap()
     };
@@ -418,10 +391,8 @@ fn a_complex_symmetric_stiffness_with_faces_has_the_modes_of_the_loss_factor() {
     let mode = |model: &Model| {
         let at = [-0.5, -0.2];
         let range = ModeOptions {
-            log10_start: -2.0,
-            log10_stop: 0.0,
             at: &at,
-            ..ModeOptions::default()
+            ..amplitude_range(-2.0, 0.0)
         };
         let branch = nonlinear_mode(model, &harmonics(3), &range, &mut Hooks::default()).unwrap();
         assert_eq!(branch.status(), Status::Ok);

@@ -1,6 +1,7 @@
 //! Natural frequencies of a sector with faces against the merged wheel of rotated copies.
 
 use crate::boundary_sector::{BoundarySector, N, about_z, dofs};
+use crate::common::models::sector_of_faces;
 use crate::common::refusal::refused;
 use hbvib::{
     Constant, Contact, ContactState, Frame, MatrixKind, MatrixView, Model, Part, SectorDescription, SectorFrame, Status,
@@ -203,17 +204,9 @@ fn a_superelement_is_a_sector_with_modes_on_no_face() {
     let (left, right) = (face(&sector.left), face(&sector.right));
     assert!(left.contains(&None));
     let mut model = Model::sector(&SectorDescription {
-        ndof: n + m,
-        sectors: N,
         engine_order: 0,
-        components: 3,
-        left: &left,
-        right: &right,
-        fixed: &[],
         frame: SectorFrame::Cartesian,
-        axis: [0.0, 0.0, 1.0],
-        forward: true,
-        coordinates: None,
+        ..sector_of_faces(n + m, N, [&left, &right])
     })
     .unwrap();
     for (kind, a) in [(MatrixKind::Stiffness, &sector.k), (MatrixKind::Mass, &sector.m)] {
@@ -234,17 +227,10 @@ fn a_superelement_is_a_sector_with_modes_on_no_face() {
 fn couplings_follow_from_matrices_without_symmetry_and_from_complex_symmetric_ones() {
     let (left, right) = ([Some(0), Some(1)], [Some(4), Some(3)]);
     let description = SectorDescription {
-        ndof: 6,
-        sectors: 5,
         engine_order: 2,
         components: 1,
-        left: &left,
-        right: &right,
         fixed: &[5],
-        frame: SectorFrame::Cylindrical,
-        axis: [0.0, 0.0, 1.0],
-        forward: true,
-        coordinates: None,
+        ..sector_of_faces(6, 5, [&left, &right])
     };
     let number = |i: usize| ((i * 37 % 11) as f64 - 5.0) / 3.0;
     let general: Vec<Complex64> = (0..36).map(|i| number(i).into()).collect();

@@ -4,7 +4,7 @@
 use crate::boundary_sector::{BoundarySector, dofs};
 use crate::common::depth::{some_of, thorough};
 use crate::common::mode_cases::{damping, follow, harmonic, only, singular_at};
-use crate::common::{harmonics, phase};
+use crate::common::{amplitude_range, harmonics, phase};
 use hbvib::{Contact, DampingForm, ModeOptions, SectorFrame};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
@@ -66,11 +66,9 @@ fn modes_of_a_stiff_sector_pass_the_onset_of_slip_and_have_the_closed_form_of_th
                 model.add_contact(&Contact::jenkins(a, b, KT, 1.0, SLIP_FORCE)).unwrap();
                 let at = [-4.6, -4.2, -3.8, -3.0];
                 let range = ModeOptions {
-                    log10_start: -8.0,
-                    log10_stop: -2.0,
                     at: &at,
                     damping_form: form,
-                    ..ModeOptions::default()
+                    ..amplitude_range(-8.0, -2.0)
                 };
                 let branch = follow(&model, &harmonics(1), &range);
                 assert!(branch.points() < 80, "{} points", branch.points());

@@ -1,6 +1,7 @@
 //! Refused faces, contacts and fixed degrees of freedom: a sentence that names the pair or degree of freedom.
 
 use crate::boundary_sector::{BoundarySector, dofs};
+use crate::common::models::sector_of_faces;
 use crate::common::refusal::refused;
 use hbvib::{
     Contact, ContactState, Frame, MatrixKind, MatrixView, Model, SectorDescription, SectorFrame, Spring, Status,
@@ -15,17 +16,9 @@ fn changed(
     let mut fixed = dofs(&sector.clamped);
     change(&mut left, &mut right, &mut fixed);
     Model::sector(&SectorDescription {
-        ndof: sector.ndof(),
-        sectors: 12,
-        engine_order: 1,
-        components: 3,
-        left: &left,
-        right: &right,
         fixed: &fixed,
         frame: sector.frame,
-        axis: [0.0, 0.0, 1.0],
-        forward: true,
-        coordinates: None,
+        ..sector_of_faces(sector.ndof(), 12, [&left, &right])
     })
 }
 
@@ -215,17 +208,8 @@ fn contacts_without_meaning_are_refused_by_degree_of_freedom() {
 fn contacts_in_turned_axes_need_the_node() {
     let (left, right) = ([Some(0), Some(2), Some(1)], [Some(3), Some(5), Some(4)]);
     let mut model = Model::sector(&SectorDescription {
-        ndof: 12,
-        sectors: 6,
-        engine_order: 1,
-        components: 3,
-        left: &left,
-        right: &right,
-        fixed: &[],
         frame: SectorFrame::Cartesian,
-        axis: [0.0, 0.0, 1.0],
-        forward: true,
-        coordinates: None,
+        ..sector_of_faces(12, 6, [&left, &right])
     })
     .unwrap();
     let contact = Contact {

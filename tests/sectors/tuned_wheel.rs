@@ -1,7 +1,7 @@
 //! Large wheels as tuned ones plus terms of low rank: against factors of all sectors, and refused where differences have no low rank.
 
 use crate::boundary_sector::{BoundarySector, N};
-use crate::common::{all_harmonics, harmonics, relative_gap, slip};
+use crate::common::{all_harmonics, harmonics, omega_range, relative_gap, slip};
 use crate::sector_contacts::jenkins;
 use hbvib::internals::FlexibilityWay;
 use hbvib::{
@@ -63,10 +63,8 @@ fn solve(model: &Model, flexibility: Flexibility, (from, to): (f64, f64), highes
         ..Response::default()
     });
     let range = ForcedOptions {
-        omega_start: from,
-        omega_stop: to,
         responses: &blades,
-        ..ForcedOptions::default()
+        ..omega_range(from, to)
     };
     forced_response(model, &solver, &range, &mut Hooks::default()).unwrap()
 }

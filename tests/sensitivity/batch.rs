@@ -2,11 +2,13 @@
 //! design that fails is reported alone.
 
 use crate::common::laws::cases;
-use crate::common::{BASE, Blisk};
+use crate::common::models::{dense, sector_of_faces};
+use crate::common::random;
+use crate::common::{BASE, Blisk, omega_range};
 use crate::design::{Change, Design, Results, tight};
 use hbvib::{
-    Batch, BatchOptions, Constant, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Parameter, Part,
-    SectorDescription, SectorFrame, SolverOptions, Status, batch, forced_response,
+    Batch, BatchOptions, Constant, Contact, Hooks, MatrixKind, MatrixView, Model, Parameter, Part, SectorDescription,
+    SectorFrame, SolverOptions, Status, batch, forced_response,
 };
 use std::cell::Cell;
 use std::f64::consts::TAU;
@@ -136,17 +138,9 @@ fn a_direction_on_a_sector_with_faces_is_that_of_the_changed_matrix() {
     let solve = |p: f64| {
         let (left, right) = (side(0), side(6));
         let mut model = Model::sector(&SectorDescription {
-            ndof: 9,
-            sectors: 7,
             engine_order: 3,
-            components: 3,
-            left: &left,
-            right: &right,
-            fixed: &[],
             frame: SectorFrame::Cartesian,
-            axis: [0.0, 0.0, 1.0],
-            forward: true,
-            coordinates: None,
+            ..sector_of_faces(9, 7, [&left, &right])
         })
         .unwrap();
         let mass: Vec<f64> = (0..81).map(|e| if e % 10 == 0 { 1.0 } else { 0.0 }).collect();
@@ -188,12 +182,7 @@ fn direction(entry: usize) -> f64 {
 /// Designs of the ring damper, reproducible.
 fn designs(count: usize) -> Vec<f64> {
     let mut state = 7_u64;
-    let mut random = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 53) as f64
-    };
+    let mut random = || random::unit(&mut state);
     let one = |_| {
         [
             2e7 + 8e7 * random(),
@@ -375,18 +364,11 @@ fn designs_that_share_a_structure_find_the_peaks_of_single_solves() {
     };
     let stiffness: Vec<f64> = (0..n * n).map(|e| entry(e / n, e % n)).collect();
     let mass: Vec<f64> = (0..n * n).map(|e| if e % (n + 1) == 0 { 1.0 } else { 0.0 }).collect();
-    let mut model = Model::new(n).unwrap();
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &mass))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &stiffness))
-        .unwrap();
-    model.set_rayleigh(0.0, 0.5).unwrap();
-    model
-        .add_contact(&Contact::jenkins(n / 2, None, 0.01, 0.3, 1.0))
-        .unwrap();
-    model.add_force(n / 2, 1, 0.05.into()).unwrap();
+    let model = dense(&mass, &stiffness)
+        .rayleigh(0.0, 0.5)
+        .slider(n / 2, 0.01, 0.3, 1.0)
+        .force(n / 2, 1, 0.05)
+        .build();
     let range = (0.015, 0.045);
     let solver = tight(3);
     let loads = [0.02, 0.2, 0.6, 1.5];
@@ -395,11 +377,7 @@ fn designs_that_share_a_structure_find_the_peaks_of_single_solves() {
     for (load, peak) in loads.iter().zip(bits_of(2)) {
         let mut one = model.clone();
         one.set_preload(0, *load).unwrap();
-        let range = ForcedOptions {
-            omega_start: range.0,
-            omega_stop: range.1,
-            ..ForcedOptions::default()
-        };
+        let range = omega_range(range.0, range.1);
         let branch = forced_response(&one, &solver, &range, &mut Hooks::default()).unwrap();
         let highest = branch.peaks().iter().fold(0.0_f64, |m, p| m.max(p.amplitude));
         assert!((f64::from_bits(peak.0) / highest - 1.0).abs() < 1e-9, "{load}");

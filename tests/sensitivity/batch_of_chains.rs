@@ -2,10 +2,9 @@
 //! resonances in the range, the highest of which may be any.
 
 use crate::common::friction::Random;
-use hbvib::{
-    BatchOptions, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Parameter, SolverOptions, Status,
-    batch, forced_response,
-};
+use crate::common::models;
+use crate::common::{at_dof, harmonics, omega_range};
+use hbvib::{BatchOptions, Contact, Hooks, Model, Parameter, SolverOptions, Status, batch, forced_response};
 
 fn between(random: &mut Random, low: f64, high: f64) -> f64 {
     low + 0.5 * (high - low) * (random.next() + 1.0)
@@ -22,26 +21,12 @@ fn power_of_ten(random: &mut Random, low: f64, high: f64) -> f64 {
 /// A chain of 2 to 6 masses with 1 to 3 sliders against the ground.
 fn chain(random: &mut Random) -> Model {
     let n = 2 + below(random, 5);
-    let mut stiffness = vec![0.0; n * n];
-    let mut mass = vec![0.0; n * n];
-    for i in 0..n {
-        let spring = between(random, 0.5, 2.0);
-        mass[i * n + i] = between(random, 0.5, 2.0);
-        stiffness[i * n + i] += spring;
-        if i > 0 {
-            stiffness[(i - 1) * n + i - 1] += spring;
-            stiffness[i * n + i - 1] -= spring;
-            stiffness[(i - 1) * n + i] -= spring;
-        }
-    }
-    let mut model = Model::new(n).unwrap();
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &mass))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &stiffness))
-        .unwrap();
-    model.set_rayleigh(0.0, power_of_ten(random, -3.8, -1.4)).unwrap();
+    let draw = |_| (between(random, 0.5, 2.0), between(random, 0.5, 2.0));
+    let (mut springs, mass): (Vec<_>, Vec<_>) = (0..n).map(draw).unzip();
+    springs.push(0.0);
+    let mut model = models::chain(&mass, &springs)
+        .rayleigh(0.0, power_of_ten(random, -3.8, -1.4))
+        .build();
     let force = power_of_ten(random, -1.0, 0.5);
     for _ in 0..=below(random, 3) {
         let kt = power_of_ten(random, -1.0, 1.0);
@@ -60,12 +45,7 @@ fn highest_peaks_of_light_chains_are_those_of_fine_sweeps() {
     for k in 0..60 {
         let model = chain(random);
         let (low, high) = (between(random, 0.05, 0.3), between(random, 2.0, 3.2));
-        let solver = SolverOptions {
-            harmonics: [1, 3, 5][k % 3],
-            tolerance: 0.0,
-            response_dof: Some(below(random, model.ndof())),
-            ..SolverOptions::default()
-        };
+        let solver = at_dof(below(random, model.ndof()), harmonics([1, 3, 5][k % 3]));
         let options = BatchOptions {
             omega_start: low,
             omega_stop: high,
@@ -84,11 +64,7 @@ fn highest_peaks_of_light_chains_are_those_of_fine_sweeps() {
             step_max: 4e-3,
             ..solver
         };
-        let range = ForcedOptions {
-            omega_start: low,
-            omega_stop: high,
-            ..ForcedOptions::default()
-        };
+        let range = omega_range(low, high);
         let branch = forced_response(&model, &fine, &range, &mut Hooks::default()).unwrap();
         assert_eq!((found.status, branch.status()), (Status::Ok, Status::Ok), "{k}");
         let highest = branch

@@ -1,8 +1,10 @@
 //! Derivatives of complex amplitudes equal closed forms of a linear oscillator and differences of converged solutions.
 
+use crate::common::models::{dense, oscillator};
+use crate::common::omega_range;
 use hbvib::{
-    Component, Constant, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Measure, Model, Parameter, Response,
-    SolverOptions, complex_sensitivity, forced_response,
+    Component, Constant, Hooks, MatrixKind, MatrixView, Measure, Model, Parameter, Response, SolverOptions,
+    complex_sensitivity, forced_response,
 };
 use num_complex::Complex64;
 
@@ -13,26 +15,14 @@ fn solved(model: &Model, omega: f64) -> hbvib::Branch {
         tol_residual: 1e-13,
         ..SolverOptions::default().fixed()
     };
-    let range = ForcedOptions {
-        omega_start: omega,
-        omega_stop: omega,
-        ..ForcedOptions::default()
-    };
+    let range = omega_range(omega, omega);
     forced_response(model, &solver, &range, &mut Hooks::default()).unwrap()
 }
 
 #[test]
 fn of_a_linear_oscillator_are_closed_forms() {
     let (k, m, c, f, omega) = (1.3, 0.7, 0.05, 0.4, 1.2);
-    let mut model = Model::new(1).unwrap();
-    for (kind, value) in [
-        (MatrixKind::Mass, m),
-        (MatrixKind::Damping, c),
-        (MatrixKind::Stiffness, k),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
-    }
-    model.add_force(0, 1, Complex64::new(f, 0.0)).unwrap();
+    let model = oscillator(m, k).damping(&[c]).force(0, 1, f).build();
     let branch = solved(&model, omega);
     let one = [1.0];
     let direction = |which| Parameter::Direction {
@@ -72,18 +62,12 @@ fn of_a_linear_oscillator_are_closed_forms() {
 
 /// Two masses, of which the first rubs on the ground.
 fn rubbing(kt: f64, mu: f64, stiffness: f64, damping: f64) -> Model {
-    let mut model = Model::new(2).unwrap();
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(2, &[1.0, 0.0, 0.0, 0.5]))
-        .unwrap();
     let k = [1.5, -0.5, -0.5, 0.5].map(|k| stiffness * k);
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(2, &k))
-        .unwrap();
-    model.set_rayleigh(0.0, 0.01 * damping).unwrap();
-    model.add_contact(&Contact::jenkins(0, None, kt, mu, 1.0)).unwrap();
-    model.add_force(1, 1, 0.05.into()).unwrap();
-    model
+    dense(&[1.0, 0.0, 0.0, 0.5], &k)
+        .rayleigh(0.0, 0.01 * damping)
+        .slider(0, kt, mu, 1.0)
+        .force(1, 1, 0.05)
+        .build()
 }
 
 #[test]

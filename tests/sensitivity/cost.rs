@@ -1,9 +1,9 @@
 //! Derivatives by a hundred parameters take fewer evaluations of the contacts than three solutions of the point.
 
+use crate::common::models::dense;
 use crate::design::{Results, tight};
 use hbvib::{
-    Call, Constant, Contact, ContactKind, MatrixKind, MatrixView, Model, Parameter, Quantity, User, UserForce,
-    sensitivity,
+    Call, Constant, Contact, ContactKind, MatrixKind, MatrixView, Parameter, Quantity, User, UserForce, sensitivity,
 };
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -37,23 +37,16 @@ fn diagonal(value: impl Fn(usize) -> f64) -> Vec<f64> {
 #[test]
 fn a_hundred_parameters_cost_less_than_three_solutions() {
     let counted = Arc::new(Counted::default());
-    let mut model = Model::new(N).unwrap();
     let mut stiffness = diagonal(|i| 2.0 + 0.1 * i as f64);
     for i in 1..N {
         stiffness[i * N + i - 1] = -1.0;
         stiffness[(i - 1) * N + i] = -1.0;
     }
-    for (kind, a) in [
-        (MatrixKind::Mass, diagonal(|_| 1.0)),
-        (MatrixKind::Damping, diagonal(|_| 0.03)),
-        (MatrixKind::Stiffness, stiffness),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(N, &a)).unwrap();
-    }
     let law = User::new(counted.clone(), 1, 0).unwrap();
-    model
-        .add_contact(&Contact::between(0, None, ContactKind::User(law)))
-        .unwrap();
+    let mut model = dense(&diagonal(|_| 1.0), &stiffness)
+        .damping(&diagonal(|_| 0.03))
+        .contact(Contact::between(0, None, ContactKind::User(law)))
+        .build();
     for i in 0..N - 1 {
         model
             .add_contact(&Contact::jenkins(i, Some(i + 1), 1.0 + 0.1 * i as f64, 0.3, 0.8))

@@ -1,9 +1,9 @@
 //! Designs whose parameters change, and their results: shared by the tests of derivatives.
 
-use crate::common::{BETA, Blisk, SECTORS, harmonics};
+use crate::common::{BETA, Blisk, SECTORS, harmonics, omega_range};
 use hbvib::{
-    Branch, Constant, Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, ModeOptions, Model, Parameter, Part,
-    Quantity, Reason, SolverOptions, Speed, forced_response, nonlinear_mode, sensitivity,
+    Branch, Constant, Contact, Hooks, MatrixKind, MatrixView, ModeOptions, Model, Parameter, Part, Quantity, Reason,
+    SolverOptions, Speed, forced_response, nonlinear_mode, sensitivity,
 };
 use num_complex::Complex64;
 
@@ -221,11 +221,7 @@ impl Results {
                 return (branch, last, values);
             }
         };
-        let range = ForcedOptions {
-            omega_start,
-            omega_stop,
-            ..ForcedOptions::default()
-        };
+        let range = omega_range(omega_start, omega_stop);
         let branch = forced_response(model, solver, &range, hooks).unwrap();
         if let Self::At(_) = self {
             let value = branch.amplitude()[0];

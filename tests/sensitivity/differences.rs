@@ -1,7 +1,7 @@
 //! Derivatives by every kind of parameter, with every law that has it, equal differences of converged solutions.
 
-use crate::common::BASE;
 use crate::common::laws::{pulled, shaken};
+use crate::common::{BASE, amplitude_range};
 use crate::design::{Change, Design, Results, check};
 use hbvib::MatrixKind::{Damping, Mass, Stiffness};
 use hbvib::{Amplitude, Constant, Contact, DampingForm, ModeOptions};
@@ -203,11 +203,9 @@ fn amplitude_by_speed() {
 /// The mode that starts as the first linear one, up to an amplitude.
 fn mode(log10: f64, amplitude: Amplitude, damping_form: DampingForm) -> ModeOptions<'static> {
     ModeOptions {
-        log10_start: log10 - 0.4,
-        log10_stop: log10,
         amplitude,
         damping_form,
-        ..ModeOptions::default()
+        ..amplitude_range(log10 - 0.4, log10)
     }
 }
 

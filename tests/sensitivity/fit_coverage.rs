@@ -1,10 +1,11 @@
 //! Intervals of 95 % from fits to many noisy data sets contain the truth as often as they claim.
 
+use crate::common::models;
 use crate::common::{BASE, BETA, one_mass};
 use crate::design::Design;
 use hbvib::{
-    Constant, Contact, FitData, FitOptions, Hooks, MatrixKind, MatrixView, Model, Parameter, Response, SolverOptions,
-    Unknown, fit, predict,
+    Constant, Contact, FitData, FitOptions, Hooks, MatrixKind, Model, Parameter, Response, SolverOptions, Unknown, fit,
+    predict,
 };
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -67,18 +68,15 @@ fn oscillator() -> Case<'static> {
 }
 
 fn chain() -> Case<'static> {
-    let mut model = Model::new(3).unwrap();
     let dense = |values: &[f64]| values.to_vec();
     let m = dense(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]);
     let k = dense(&[2.0, -1.0, 0.0, -1.0, 2.0, -1.0, 0.0, -1.0, 1.0]);
-    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(3, &m)).unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(3, &k))
-        .unwrap();
-    model.set_rayleigh(0.0, 0.03).unwrap();
-    model.add_contact(&Contact::jenkins(0, None, 0.6, 0.1, 1.0)).unwrap();
-    model.add_contact(&Contact::jenkins(1, None, 0.3, 0.2, 1.0)).unwrap();
-    model.add_force(2, 1, 1.0.into()).unwrap();
+    let model = models::dense(&m, &k)
+        .rayleigh(0.0, 0.03)
+        .slider(0, 0.6, 0.1, 1.0)
+        .slider(1, 0.3, 0.2, 1.0)
+        .force(2, 1, 1.0)
+        .build();
     Case {
         name: "chain with two contacts",
         model,

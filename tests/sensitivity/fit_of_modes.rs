@@ -1,10 +1,8 @@
 //! Peaks, backbones and linear modes of a known model lead back to it.
 
+use crate::common::{amplitude_range, at_dof, omega_range};
 use crate::fit_of_responses::{AWAY, PARAMETERS, chain, from_start, nine_harmonics};
-use hbvib::{
-    DataKind, FitData, FitOptions, ForcedOptions, Hooks, ModeOptions, Response, SolverOptions, fit, forced_response,
-    nonlinear_mode,
-};
+use hbvib::{DataKind, FitData, FitOptions, Hooks, ModeOptions, Response, fit, forced_response, nonlinear_mode};
 use num_complex::Complex64;
 
 #[test]
@@ -13,10 +11,8 @@ fn of_several_kinds_find_the_truth() {
     let solver = nine_harmonics();
     let log10 = [-1.5, -0.5, 0.0, 0.5];
     let range = ModeOptions {
-        log10_start: log10[0],
-        log10_stop: log10[3],
         at: &log10,
-        ..ModeOptions::default()
+        ..amplitude_range(log10[0], log10[3])
     };
     let mode = nonlinear_mode(&model, &solver, &range, &mut Hooks::default()).unwrap();
     let at = |i: usize| {
@@ -28,15 +24,8 @@ fn of_several_kinds_find_the_truth() {
     let mut louder = chain();
     louder.clear_forces();
     louder.add_force(1, 1, 0.05.into()).unwrap();
-    let curve = ForcedOptions {
-        omega_start: 0.6,
-        omega_stop: 0.9,
-        ..ForcedOptions::default()
-    };
-    let watching = SolverOptions {
-        response_dof: Some(1),
-        ..solver
-    };
+    let curve = omega_range(0.6, 0.9);
+    let watching = at_dof(1, solver);
     let branch = forced_response(&louder, &watching, &curve, &mut Hooks::default()).unwrap();
     let peak = branch.peaks()[0];
     let peaks = [Complex64::new(peak.amplitude, peak.omega)];

@@ -1,26 +1,21 @@
 //! Fits to complex responses: a reference data set, and data that deceive.
 
+use crate::common::models::dense;
 use crate::common::{data, number};
 use hbvib::{
-    Constant, Contact, DataKind, FitData, FitOptions, Hooks, Loss, MatrixKind, MatrixView, Model, Parameter,
-    SolverOptions, Status, Suspicion, Unknown, fit, predict,
+    Constant, DataKind, FitData, FitOptions, Hooks, Loss, MatrixKind, Model, Parameter, SolverOptions, Status,
+    Suspicion, Unknown, fit, predict,
 };
 use num_complex::Complex64;
 use serde_json::Value;
 
 /// Two masses, of which the first rubs on the ground, under a force of 1 on the second.
 pub fn chain() -> Model {
-    let mut model = Model::new(2).unwrap();
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(2, &[1.0, 0.0, 0.0, 0.5]))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(2, &[1.5, -0.5, -0.5, 0.5]))
-        .unwrap();
-    model.set_rayleigh(0.0, 0.01).unwrap();
-    model.add_contact(&Contact::jenkins(0, None, 0.3, 0.15, 1.0)).unwrap();
-    model.add_force(1, 1, 1.0.into()).unwrap();
-    model
+    dense(&[1.0, 0.0, 0.0, 0.5], &[1.5, -0.5, -0.5, 0.5])
+        .rayleigh(0.0, 0.01)
+        .slider(0, 0.3, 0.15, 1.0)
+        .force(1, 1, 1.0)
+        .build()
 }
 
 pub const PARAMETERS: [Parameter<'static>; 4] = [

@@ -1,19 +1,16 @@
 //! Wear over a life: closed forms, stored rows of another code, and the classical Runge-Kutta method on loads with the works that
 //! summaries of contacts tell.
 
-use crate::common::{data, number};
+use crate::common::models::{self, free_end, oscillator};
+use crate::common::{at_dof, data, number, omega_range};
 use hbvib::{
-    Constant, Contact, Duty, Error, ForcedOptions, Hooks, Life, LifeEventKind, LifeFollow, LifeOptions, MatrixKind,
-    MatrixView, Model, SolverOptions, Status, Wear, best_load_for_life, forced_response, life,
+    Constant, Contact, Duty, Error, Hooks, Life, LifeEventKind, LifeFollow, LifeOptions, Model, SolverOptions, Status,
+    Wear, best_load_for_life, forced_response, life,
 };
 use std::f64::consts::PI;
 
 fn solver(harmonics: usize) -> SolverOptions {
-    SolverOptions {
-        harmonics,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    }
+    crate::common::harmonics(harmonics)
 }
 
 fn run(model: &Model, harmonics: usize, options: &LifeOptions<'_>) -> Result<Life, Error> {
@@ -39,27 +36,12 @@ fn close(name: &str, found: f64, wanted: f64, tolerance: f64) {
 /// Masses 1 in a row from the ground, springs 1, damping 0.05 of K, and friction on each.
 fn chain(loads: &[f64]) -> Model {
     let n = loads.len();
-    let mut k = vec![0.0; n * n];
-    let mut m = vec![0.0; n * n];
-    for i in 0..n {
-        m[i * n + i] = 1.0;
-        k[i * n + i] = if i + 1 < n { 2.0 } else { 1.0 };
-        if i > 0 {
-            k[i * n + i - 1] = -1.0;
-            k[(i - 1) * n + i] = -1.0;
-        }
-    }
-    let mut model = Model::new(n).unwrap();
-    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &m)).unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &k))
-        .unwrap();
-    model.set_rayleigh(0.0, 0.05).unwrap();
-    for (i, load) in loads.iter().enumerate() {
-        model.add_contact(&Contact::jenkins(i, None, 1.0, 0.3, *load)).unwrap();
-    }
-    model.add_force(n - 1, 1, 0.3.into()).unwrap();
-    model
+    let sliders = loads.iter().enumerate();
+    models::chain(&vec![1.0; n], &free_end(n, 1.0))
+        .rayleigh(0.0, 0.05)
+        .contacts(sliders.map(|(i, load)| Contact::jenkins(i, None, 1.0, 0.3, *load)))
+        .force(n - 1, 1, 0.3)
+        .build()
 }
 
 fn wear(rates: &[f64]) -> Vec<Wear> {
@@ -79,15 +61,8 @@ fn works(model: &Model, loads: &[f64], harmonics: usize, range: (f64, f64)) -> (
     for (contact, load) in loads.iter().enumerate() {
         model.set_preload(contact, load.max(0.0)).unwrap();
     }
-    let options = ForcedOptions {
-        omega_start: range.0,
-        omega_stop: range.1,
-        ..ForcedOptions::default()
-    };
-    let solver = SolverOptions {
-        response_dof: Some(model.ndof() - 1),
-        ..solver(harmonics)
-    };
+    let options = omega_range(range.0, range.1);
+    let solver = at_dof(model.ndof() - 1, solver(harmonics));
     let branch = forced_response(&model, &solver, &options, &mut Hooks::default()).unwrap();
     let (point, amplitude) = if range.0 < range.1 {
         let highest = branch.peaks().iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
@@ -136,15 +111,10 @@ fn by_runge_kutta(
 #[test]
 fn wear_under_a_given_motion_is_the_logistic_curve() {
     let (kt, mu, load, c, amplitude) = (2.0, 0.3, 1.7, 0.02, 0.9);
-    let mut model = Model::new(1).unwrap();
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(1, &[1e12]))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(1, &[1e8]))
-        .unwrap();
-    model.add_contact(&Contact::jenkins(0, None, kt, mu, load)).unwrap();
-    model.add_force(0, 1, ((1e8 - 1e12) * amplitude).into()).unwrap();
+    let model = oscillator(1e12, 1e8)
+        .slider(0, kt, mu, load)
+        .force(0, 1, (1e8 - 1e12) * amplitude)
+        .build();
     let end = kt * amplitude / mu;
     let exact = |n: f64| end / (1.0 + (end / load - 1.0) * (4.0 * c * mu * amplitude * n).exp());
     let cycles = [0.0, 3.0, 10.0, 31.0, 100.0, 200.0];
@@ -185,16 +155,11 @@ fn wear_under_a_given_motion_is_the_logistic_curve() {
 #[test]
 fn wear_of_an_oscillator_is_that_of_stored_rows() {
     let rows = data("wear_of_one_contact.json");
-    let mut model = Model::new(1).unwrap();
-    for (which, value) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Stiffness, 1.0),
-        (MatrixKind::Damping, 0.05),
-    ] {
-        model.set_matrix(which, &MatrixView::dense(1, &[value])).unwrap();
-    }
-    model.add_contact(&Contact::jenkins(0, None, 1.0, 0.3, 0.6)).unwrap();
-    model.add_force(0, 1, 0.3.into()).unwrap();
+    let model = oscillator(1.0, 1.0)
+        .damping(&[0.05])
+        .slider(0, 1.0, 0.3, 0.6)
+        .force(0, 1, 0.3)
+        .build();
     for harmonics in [1, 9, 31] {
         let row = &rows[format!("b_H{harmonics}").as_str()];
         let list = |name: &str| -> Vec<f64> { row[name].as_array().unwrap().iter().map(number).collect() };
@@ -246,10 +211,7 @@ fn wear_of_coupled_contacts_is_that_of_runge_kutta() {
             tolerance: 1e-7,
             ..LifeOptions::default()
         };
-        let solver = SolverOptions {
-            response_dof: Some(2),
-            ..solver(7)
-        };
+        let solver = at_dof(2, solver(7));
         let found = life(&model, &solver, &options, &mut Hooks::default()).unwrap();
         assert_eq!(found.status, Status::Ok, "{:?}", found.reason);
         let end = &found.points[1];
@@ -371,10 +333,7 @@ fn a_life_takes_thirty_vibrations() {
                 tolerance,
                 ..LifeOptions::default()
             };
-            let solver = SolverOptions {
-                response_dof: Some(loads.len() - 1),
-                ..solver(5)
-            };
+            let solver = at_dof(loads.len() - 1, solver(5));
             life(&model, &solver, &options, &mut Hooks::default()).unwrap()
         };
         let (found, exact) = (run_at(1e-4), run_at(1e-8));
@@ -688,17 +647,12 @@ fn a_stiffness_that_is_none_is_refused() {
 #[test]
 fn a_life_tells_where_its_motion_ends_at_a_fold() {
     let (kt, mu, load, omega, damping, bend, force) = (0.3, 0.3, 0.35, 0.85, 0.05, -0.1, 0.25);
-    let mut model = Model::new(1).unwrap();
-    for (which, value) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Stiffness, 1.0),
-        (MatrixKind::Damping, damping),
-    ] {
-        model.set_matrix(which, &MatrixView::dense(1, &[value])).unwrap();
-    }
-    model.add_contact(&Contact::jenkins(0, None, kt, mu, load)).unwrap();
-    model.add_contact(&Contact::cubic(0, None, 0.0, bend)).unwrap();
-    model.add_force(0, 1, force.into()).unwrap();
+    let model = oscillator(1.0, 1.0)
+        .damping(&[damping])
+        .slider(0, kt, mu, load)
+        .contact(Contact::cubic(0, None, 0.0, bend))
+        .force(0, 1, force)
+        .build();
     // Force that a steady amplitude needs.
     let needed = |a: f64, n: f64| {
         let slip = mu * n / kt;
@@ -772,10 +726,7 @@ fn a_life_tells_where_its_peak_vanishes() {
         tolerance: 1e-6,
         ..LifeOptions::default()
     };
-    let solver = SolverOptions {
-        response_dof: Some(2),
-        ..solver(5)
-    };
+    let solver = at_dof(2, solver(5));
     let found = life(&model, &solver, &options, &mut Hooks::default()).unwrap();
     assert_eq!(found.status, Status::Ok, "{:?}", found.reason);
     println!("{:?}, {} vibrations", found.events, found.solutions);
@@ -787,11 +738,7 @@ fn a_life_tells_where_its_peak_vanishes() {
         for (contact, load) in point.loads.iter().enumerate() {
             model.set_preload(contact, *load).unwrap();
         }
-        let sweep = ForcedOptions {
-            omega_start: 0.63,
-            omega_stop: 0.67,
-            ..ForcedOptions::default()
-        };
+        let sweep = omega_range(0.63, 0.67);
         let branch = forced_response(&model, &solver, &sweep, &mut Hooks::default()).unwrap();
         assert_eq!(!branch.peaks().is_empty(), is_there, "{:?}", branch.peaks());
     }

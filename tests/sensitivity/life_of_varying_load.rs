@@ -1,8 +1,8 @@
 //! A life ends in few vibrations at every accuracy, where a step seems to meet the end of a motion that goes on.
 
-use hbvib::{
-    Contact, Duty, Hooks, LifeFollow, LifeOptions, MatrixKind, MatrixView, Model, SolverOptions, Status, Wear, life,
-};
+use crate::common::harmonics;
+use crate::common::models::{self, dense, tridiagonal};
+use hbvib::{Contact, Duty, Hooks, LifeFollow, LifeOptions, Model, Status, Wear, life};
 use num_complex::Complex64;
 
 /// Eight masses in a row of random springs, three damped modes, and friction under a load that varies.
@@ -36,20 +36,7 @@ fn chain() -> Model {
         -0.759_671_893_006_127_7,
         -1.688_054_872_397_650_7,
     ];
-    let n = mass.len();
-    let (mut m, mut k) = (vec![0.0; n * n], vec![0.0; n * n]);
-    for i in 0..n {
-        m[i * n + i] = mass[i];
-        k[i * n + i] = diagonal[i];
-        if i > 0 {
-            k[i * n + i - 1] = beside[i - 1];
-            k[(i - 1) * n + i] = beside[i - 1];
-        }
-    }
-    let mut model = Model::new(n).unwrap();
-    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &m)).unwrap();
-    let stiffness = MatrixView::dense(n, &k);
-    model.set_matrix(MatrixKind::Stiffness, &stiffness).unwrap();
+    let mut model = dense(&models::diagonal(&mass), &tridiagonal(&diagonal, &beside)).build();
     model
         .set_modal_damping(&[
             0.020_601_757_872_865_386,
@@ -81,11 +68,7 @@ fn a_life_ends_at_every_accuracy() {
         rate: 0.121_213_383_423_849_41,
         area: 1.0,
     }];
-    let solver = SolverOptions {
-        harmonics: 5,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    };
+    let solver = harmonics(5);
     let depth = |tolerance: f64| {
         let options = LifeOptions {
             wear: &wear,

@@ -1,17 +1,13 @@
 //! Wear of patches: contacts with a normal stiffness, whose loads vary within the period and with the gap that wear opens.
 
+use crate::common::{at_dof, omega_range};
 use hbvib::{
-    Constant, Contact, Duty, ForcedOptions, Hooks, LifeFollow, LifeOptions, MatrixKind, MatrixView, Model,
-    SolverOptions, Status, Wear, forced_response, life,
+    Constant, Contact, Duty, Hooks, LifeFollow, LifeOptions, MatrixKind, MatrixView, Model, SolverOptions, Status,
+    Wear, forced_response, life,
 };
 
 fn solver(harmonics: usize) -> SolverOptions {
-    SolverOptions {
-        harmonics,
-        tolerance: 0.0,
-        response_dof: Some(0),
-        ..SolverOptions::default()
-    }
+    at_dof(0, crate::common::harmonics(harmonics))
 }
 
 fn diagonal(model: &mut Model, which: MatrixKind, values: &[f64]) {
@@ -89,11 +85,7 @@ impl Patch {
     ) -> Vec<f64> {
         let rates = |depths: &[f64]| -> Vec<f64> {
             let worn: Vec<f64> = loads.iter().zip(depths).map(|(load, h)| load - self.kn * h).collect();
-            let options = ForcedOptions {
-                omega_start: omega,
-                omega_stop: omega,
-                ..ForcedOptions::default()
-            };
+            let options = omega_range(omega, omega);
             let branch =
                 forced_response(&self.model(&worn), &solver(harmonics), &options, &mut Hooks::default()).unwrap();
             let work = |w: &Wear| branch.contact_summary(0, w.contact).unwrap().work;

@@ -1,11 +1,11 @@
 //! Sampled laws over a parameter: the error of sampling is that of responses at single values, and where it misses
 //! the tolerance the status tells it.
 
-use crate::common::BASE;
+use crate::common::{BASE, omega_range};
 use crate::design::{Design, tight};
 use hbvib::{
-    BatchOptions, Branch, Constant, Follow, ForcedOptions, Hooks, Parameter, ParameterRange, SolverOptions, Status,
-    batch, forced_response, parameter_response,
+    BatchOptions, Branch, Constant, Follow, Hooks, Parameter, ParameterRange, SolverOptions, Status, batch,
+    forced_response, parameter_response,
 };
 use std::f64::consts::TAU;
 
@@ -41,11 +41,7 @@ fn the_error_of_sampling_is_that_of_responses_at_single_values() {
         assert_eq!(errors.len(), found.points());
         for i in [0, found.points() / 2, found.points() - 1] {
             let load = found.parameter().unwrap()[i];
-            let range = ForcedOptions {
-                omega_start: omega,
-                omega_stop: omega,
-                ..ForcedOptions::default()
-            };
+            let range = omega_range(omega, omega);
             let model = Design::ring_damper(&BASE, load).model();
             let single = forced_response(&model, &solver, &range, &mut Hooks::default()).unwrap();
             let exact = single.sampling_error()[0];

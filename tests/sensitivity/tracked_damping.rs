@@ -1,7 +1,7 @@
 //! The largest damping ratio of a nonlinear mode over a parameter is that of a Jenkins element in closed form, and in the
 //! ring damper that of backbones computed at single values.
 
-use crate::common::{BASE, Blisk};
+use crate::common::{BASE, Blisk, amplitude_range};
 use crate::design::{Design, tight};
 use hbvib::{
     Branch, Constant, Contact, Follow, Hooks, MatrixKind, ModeChoice, ModeOptions, Parameter, ParameterRange,
@@ -172,9 +172,7 @@ fn largest_damping_of_the_ring_damper_is_that_of_single_backbones() {
             let at = branch.mode_at(i).unwrap();
             let options = ModeOptions {
                 choice: ModeChoice::Near(near),
-                log10_start: at.log10_amplitude - 0.4,
-                log10_stop: at.log10_amplitude + 0.4,
-                ..ModeOptions::default()
+                ..amplitude_range(at.log10_amplitude - 0.4, at.log10_amplitude + 0.4)
             };
             let backbone = nonlinear_mode(&other.model(), &solver, &options, &mut Hooks::default()).unwrap();
             let peak = backbone.peaks()[0];

@@ -1,6 +1,7 @@
 //! Folds followed over a parameter are those of Duffing's equation in closed form, cusps included, and those of fine
 //! sweeps of a model with a stop.
 
+use crate::common::omega_range;
 use crate::design::{Design, tight};
 use hbvib::{
     Branch, Contact, Follow, ForcedOptions, Hooks, MatrixKind, Parameter, ParameterRange, SolverOptions, Status,
@@ -157,11 +158,7 @@ fn folds_of_a_stop_are_those_of_fine_sweeps() {
     };
     let solver = tight(7);
     let sweep = |gap: f64, near: f64| {
-        let range = ForcedOptions {
-            omega_start: 0.9 * near,
-            omega_stop: 1.1 * near,
-            ..ForcedOptions::default()
-        };
+        let range = omega_range(0.9 * near, 1.1 * near);
         forced_response(&design(gap).model(), &solver, &range, &mut Hooks::default()).unwrap()
     };
     let first = sweep(0.5, 1.05);

@@ -2,13 +2,13 @@
 //! full wheel whose matrices are built by hand, of closed forms, and of time integration.
 
 use crate::common::mode_cases::follow;
+use crate::common::models::{Structure, sector_of_faces};
 use crate::common::refusal::refused;
-use crate::common::{Wheel, all_harmonics, harmonics, phase, relative_gap, slip, solve_at};
+use crate::common::{Wheel, all_harmonics, amplitude_range, harmonics, phase, relative_gap, slip, solve_at};
 use crate::{multipliers, ordinary};
 use hbvib::{
     AeroForm, Contact, FloquetOptions, Hooks, LinearContacts, MatrixKind, MatrixView, ModeOptions, Model, Part,
-    SectorDescription, SectorFrame, Status, TimeOptions, VerifyOptions, Waves, damped_modes, floquet, time_response,
-    verify,
+    SectorDescription, Status, TimeOptions, VerifyOptions, Waves, damped_modes, floquet, time_response, verify,
 };
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -47,23 +47,16 @@ fn contacts() -> [Contact; 2] {
 }
 
 fn sector(engine_order: i64) -> Model {
-    let mut model = Model::cyclic(2, N).unwrap();
-    for (kind, a) in [
-        (MatrixKind::Mass, MASS),
-        (MatrixKind::Damping, DAMPING),
-        (MatrixKind::Stiffness, STIFFNESS),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(2, &a)).unwrap();
-    }
-    model
-        .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(2, &NEXT))
-        .unwrap();
-    model.set_rayleigh(0.0, 0.01).unwrap();
-    model.set_wave(engine_order);
-    for contact in contacts() {
-        model.add_contact(&contact).unwrap();
-    }
-    model.add_force(0, 1, 0.6.into()).unwrap();
+    let mut model = Structure::cyclic(2, N)
+        .mass(&MASS)
+        .damping(&DAMPING)
+        .stiffness(&STIFFNESS)
+        .next(MatrixKind::Stiffness, &NEXT)
+        .rayleigh(0.0, 0.01)
+        .wave(engine_order)
+        .contacts(contacts())
+        .force(0, 1, 0.6)
+        .build();
     for (form, coefficients) in FORMS {
         model.set_aero(&[0, 1], &complex(coefficients), &OFFSETS, form).unwrap();
     }
@@ -204,16 +197,13 @@ fn complex_coefficients_act_by_the_nodal_diameter_of_the_harmonic() {
     ];
     for engine_order in [1_i64, -1, 2, 7] {
         for h in [0_usize, 1, 3] {
-            let mut model = Model::cyclic(1, 5).unwrap();
-            for (kind, value) in [
-                (MatrixKind::Mass, 1.0),
-                (MatrixKind::Damping, 0.03),
-                (MatrixKind::Stiffness, 3.0),
-            ] {
-                model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
-            }
-            model.set_wave(engine_order);
-            model.add_force(0, h, 1.0.into()).unwrap();
+            let mut model = Structure::cyclic(1, 5)
+                .mass(&[1.0])
+                .damping(&[0.03])
+                .stiffness(&[3.0])
+                .wave(engine_order)
+                .force(0, h, 1.0)
+                .build();
             for (form, c) in [AeroForm::Displacement, AeroForm::Velocity].into_iter().zip(&c) {
                 model.set_aero(&[0], c, &offsets, form).unwrap();
             }
@@ -243,16 +233,13 @@ fn a_nonlinear_mode_has_frequency_and_damping_of_its_closed_form() {
     let offsets = [0, 1, -1];
     let gamma = 0.7;
     for diameter in [1_i64, 2] {
-        let mut model = Model::cyclic(1, 5).unwrap();
-        for (kind, value) in [
-            (MatrixKind::Mass, 1.0),
-            (MatrixKind::Damping, 0.03),
-            (MatrixKind::Stiffness, 3.0),
-        ] {
-            model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
-        }
-        model.set_wave(diameter);
-        model.add_contact(&Contact::cubic(0, None, 0.0, gamma)).unwrap();
+        let mut model = Structure::cyclic(1, 5)
+            .mass(&[1.0])
+            .damping(&[0.03])
+            .stiffness(&[3.0])
+            .wave(diameter)
+            .contact(Contact::cubic(0, None, 0.0, gamma))
+            .build();
         model
             .set_aero(&[0], &complex(&a), &offsets, AeroForm::Displacement)
             .unwrap();
@@ -260,10 +247,8 @@ fn a_nonlinear_mode_has_frequency_and_damping_of_its_closed_form() {
             .set_aero(&[0], &complex(&b), &offsets, AeroForm::Velocity)
             .unwrap();
         let range = ModeOptions {
-            log10_start: -3.0,
-            log10_stop: 0.5,
             diameter: Some(diameter),
-            ..ModeOptions::default()
+            ..amplitude_range(-3.0, 0.5)
         };
         let branch = follow(&model, &harmonics(1), &range);
         let influence = |c: &[f64; 3]| -> Complex64 {
@@ -339,17 +324,9 @@ fn the_influence_on_a_face_acts_on_the_next_sector() {
         .into_iter()
         .map(|dof| {
             let sector = SectorDescription {
-                ndof: 2,
-                sectors: 5,
                 engine_order: 2,
                 components: 1,
-                left: &[Some(0)],
-                right: &[Some(1)],
-                fixed: &[],
-                frame: SectorFrame::Cylindrical,
-                axis: [0.0, 0.0, 1.0],
-                forward: true,
-                coordinates: None,
+                ..sector_of_faces(2, 5, [&[Some(0)], &[Some(1)]])
             };
             let mut model = Model::sector(&sector).unwrap();
             for (kind, a) in [

@@ -1,11 +1,11 @@
 //! Stability along a forced response, and the bifurcations located on it.
 
 use crate::common::peers::structure;
-use crate::common::{BASE, harmonics, one_mass, solve_at, sweep};
+use crate::common::{BASE, amplitude_range, harmonics, one_mass, solve_at, sweep};
 use crate::{multipliers, ordinary};
 use hbvib::{
-    Bifurcation, BifurcationKind, Contact, ContactKind, Hooks, ModeOptions, Model, Polynomial, SolverOptions, Status,
-    Waves, nonlinear_mode,
+    Bifurcation, BifurcationKind, Contact, ContactKind, Hooks, Model, Polynomial, SolverOptions, Status, Waves,
+    nonlinear_mode,
 };
 use std::f64::consts::TAU;
 use std::time::Instant;
@@ -143,11 +143,7 @@ fn the_field_has_the_radius_that_floquet_finds() {
 #[test]
 fn a_nonlinear_mode_refuses_stability_along_its_curve() {
     let model = one_mass(0.02, &Contact::jenkins(0, None, 1.0, 1.0, 0.3), 0.2);
-    let range = ModeOptions {
-        log10_start: -1.0,
-        log10_stop: 0.0,
-        ..ModeOptions::default()
-    };
+    let range = amplitude_range(-1.0, 0.0);
     let e = nonlinear_mode(&model, &of_wave(9), &range, &mut Hooks::default()).unwrap_err();
     assert_eq!(e.status, Status::Argument);
 }

@@ -1,7 +1,8 @@
 //! Branches of the double period and of broken symmetry, found without a guess: against motions that shooting found in time.
 
+use crate::common::models::dense;
 use crate::common::peers::structure;
-use crate::common::{all_harmonics, data, harmonics, largest, one_mass};
+use crate::common::{all_harmonics, at_dof, data, harmonics, largest, omega_range, one_mass};
 use hbvib::{
     BifurcationKind, Branch, Contact, ContactKind, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Part,
     Polynomial, SolverOptions, VerifyOptions, forced_response, verify,
@@ -11,11 +12,9 @@ use num_complex::Complex64;
 /// A response with the branches that branch off from it.
 fn tree(model: &Model, solver: &SolverOptions, (from, to): (f64, f64), at: &[f64]) -> Branch {
     let range = ForcedOptions {
-        omega_start: from,
-        omega_stop: to,
         at,
         branches: 1,
-        ..ForcedOptions::default()
+        ..omega_range(from, to)
     };
     forced_response(model, solver, &range, &mut Hooks::default()).unwrap()
 }
@@ -189,14 +188,9 @@ fn a_doubled_period_ends_where_it_merges() {
 #[test]
 fn a_doubled_curve_has_children_at_its_branch_point() {
     let push = 0.005;
-    let mut model = Model::new(2).unwrap();
-    for (kind, values) in [
-        (MatrixKind::Mass, [1.0, 0.0, 0.0, 1.0]),
-        (MatrixKind::Damping, [0.1, 0.0, 0.0, 0.1]),
-        (MatrixKind::Stiffness, [1.0 - push, push, push, 1.0 - push]),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(2, &values)).unwrap();
-    }
+    let mut model = dense(&[1.0, 0.0, 0.0, 1.0], &[1.0 - push, push, push, 1.0 - push])
+        .damping(&[0.1, 0.0, 0.0, 0.1])
+        .build();
     for dof in [0, 1] {
         let spring = Polynomial::scalar(&[0.0, -1.0], &[]).unwrap();
         let contact = Contact::between(dof, None, ContactKind::Polynomial(spring));
@@ -262,11 +256,7 @@ fn no_child_is_its_parent() {
             k[(i - 1) * n + i] = -springs[i - 1];
         }
     }
-    let mut model = Model::new(n).unwrap();
-    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &m)).unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &k))
-        .unwrap();
+    let mut model = dense(&m, &k).build();
     let general = MatrixView {
         part: Part::General,
         ..MatrixView::dense(n, &c)
@@ -277,16 +267,11 @@ fn no_child_is_its_parent() {
         .unwrap();
     model.add_force(2, 1, 0.458.into()).unwrap();
     let range = ForcedOptions {
-        omega_start: 0.7247,
-        omega_stop: 1.2681,
         branches: 1,
         branch_depth: 2,
-        ..ForcedOptions::default()
+        ..omega_range(0.7247, 1.2681)
     };
-    let solver = SolverOptions {
-        response_dof: Some(0),
-        ..harmonics(5)
-    };
+    let solver = at_dof(0, harmonics(5));
     let found = forced_response(&model, &solver, &range, &mut Hooks::default()).unwrap();
     println!("{} children", found.children().len());
     let mut left: Vec<&Branch> = found.children().iter().collect();

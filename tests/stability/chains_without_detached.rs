@@ -1,11 +1,10 @@
 //! Random chains with friction have no detached curves, and none is reported. Without `branches` nothing is sought.
 
 use crate::common::depth::some_of;
-use crate::common::harmonics;
-use hbvib::{
-    Branch, Contact, ContactState, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, Waves,
-    forced_response,
-};
+use crate::common::models::coupled;
+use crate::common::random;
+use crate::common::{harmonics, omega_range};
+use hbvib::{Branch, Contact, ContactState, ForcedOptions, Hooks, Model, SolverOptions, Waves, forced_response};
 use std::time::Instant;
 
 /// Numbers in 0 … 1.
@@ -13,11 +12,7 @@ struct Random(u64);
 
 impl Random {
     fn between(&mut self, from: f64, to: f64) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        from + (to - from) * (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+        from + (to - from) * random::unit(&mut self.0)
     }
 
     fn below(&mut self, n: usize) -> usize {
@@ -32,22 +27,10 @@ fn chain(seed: u64) -> (Model, f64) {
         random.between(0.0, 1.0);
     }
     let n = 2 + random.below(4);
-    let (mut mass, mut stiffness) = (vec![0.0; n * n], vec![0.0; n * n]);
-    for i in 0..n {
-        mass[i * n + i] = random.between(0.5, 2.0);
-        stiffness[i * n + i] += random.between(0.2, 1.0);
-    }
-    for i in 1..n {
-        let k = random.between(0.3, 1.5);
-        for (a, b, sign) in [(i, i, 1.0), (i - 1, i - 1, 1.0), (i, i - 1, -1.0), (i - 1, i, -1.0)] {
-            stiffness[a * n + b] += sign * k;
-        }
-    }
-    let mut model = Model::new(n).unwrap();
-    for (kind, values) in [(MatrixKind::Mass, &mass), (MatrixKind::Stiffness, &stiffness)] {
-        model.set_matrix(kind, &MatrixView::dense(n, values)).unwrap();
-    }
-    model.set_rayleigh(0.01, 0.01).unwrap();
+    let draw = |_| (random.between(0.5, 2.0), random.between(0.2, 1.0));
+    let (mass, ground): (Vec<_>, Vec<_>) = (0..n).map(draw).unzip();
+    let between: Vec<f64> = (1..n).map(|_| random.between(0.3, 1.5)).collect();
+    let mut model = coupled(&mass, &ground, &between).rayleigh(0.01, 0.01).build();
     let omega = model.linear_modes(0, ContactState::Free).unwrap().omega[0];
     for _ in 0..1 + random.below(2) {
         let (kt, load) = (random.between(0.1, 0.6), random.between(0.05, 0.5));
@@ -62,10 +45,8 @@ fn chain(seed: u64) -> (Model, f64) {
 fn solve(seed: u64, branches: usize, stability: Option<Waves>) -> (Branch, f64) {
     let (model, omega) = chain(seed);
     let range = ForcedOptions {
-        omega_start: 0.7 * omega,
-        omega_stop: 1.6 * omega,
         branches,
-        ..ForcedOptions::default()
+        ..omega_range(0.7 * omega, 1.6 * omega)
     };
     let solver = SolverOptions {
         stability,

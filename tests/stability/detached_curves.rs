@@ -1,12 +1,14 @@
 //! Response curves without connection to the sweep, found from nonlinear modes: against shooting, and against one harmonic in
 //! closed form.
 
+use crate::common::models::chain;
 use crate::common::peers::structure;
-use crate::common::{data, harmonics, one_mass};
+use crate::common::random;
+use crate::common::{data, harmonics, omega_range, one_mass};
 use core::f64::consts::PI;
 use hbvib::{
-    Branch, Call, Contact, ContactKind, ContactState, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Polynomial,
-    SolverOptions, Status, SteadyMethod, TimeOptions, User, UserForce, forced_response, time_response,
+    Branch, Call, Contact, ContactKind, ContactState, ForcedOptions, Hooks, Model, Polynomial, SolverOptions, Status,
+    SteadyMethod, TimeOptions, User, UserForce, forced_response, time_response,
 };
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -19,11 +21,9 @@ fn falling_damping(force: f64) -> Model {
 
 fn with_detached(model: &Model, solver: &SolverOptions, (from, to): (f64, f64), at: &[f64]) -> Branch {
     let range = ForcedOptions {
-        omega_start: from,
-        omega_stop: to,
         at,
         branches: 2,
-        ..ForcedOptions::default()
+        ..omega_range(from, to)
     };
     forced_response(model, solver, &range, &mut Hooks::default()).unwrap()
 }
@@ -166,33 +166,13 @@ fn friction_that_falls_with_the_speed_has_a_curve_beside_the_sweep() {
 /// Chains with sliders, whose resonances all lie on their sweeps.
 fn none_beside_random_chains(count: u64) {
     let mut state = 5_u64;
-    let mut next = move || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 53) as f64
-    };
+    let mut next = move || random::unit(&mut state);
     let mut resonances = 0;
     for number in 0..count {
         let n = 2 + (4.0 * next()) as usize;
         let k: Vec<f64> = (0..=n).map(|_| 10f64.powf(next() - 0.5)).collect();
-        let (mut mass, mut stiffness) = (vec![0.0; n * n], vec![0.0; n * n]);
-        for i in 0..n {
-            mass[i * n + i] = 10f64.powf(0.6 * next() - 0.3);
-            stiffness[i * n + i] = k[i] + k[i + 1];
-            if i > 0 {
-                stiffness[i * n + i - 1] = -k[i];
-                stiffness[(i - 1) * n + i] = -k[i];
-            }
-        }
-        let mut model = Model::new(n).unwrap();
-        model
-            .set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &mass))
-            .unwrap();
-        model
-            .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &stiffness))
-            .unwrap();
-        model.set_rayleigh(0.0, 0.01).unwrap();
+        let mass: Vec<f64> = (0..n).map(|_| 10f64.powf(0.6 * next() - 0.3)).collect();
+        let mut model = chain(&mass, &k).rayleigh(0.0, 0.01).build();
         let at = (n as f64 * next()) as usize;
         let kt = 10f64.powf(next() - 0.5);
         let limit = 10f64.powf(1.5 * next() - 1.0);

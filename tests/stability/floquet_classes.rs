@@ -1,31 +1,25 @@
 //! Multipliers that are known by construction are told apart from those that decide about stability.
 
-use crate::common::{harmonics, one_mass, solve_at};
+use crate::common::models::dense;
+use crate::common::random;
+use crate::common::{amplitude_range, harmonics, one_mass, solve_at};
 use crate::{multipliers, of_class, ordinary};
 use hbvib::{
-    Contact, FloquetOptions, Hooks, MatrixKind, MatrixView, ModeOptions, Model, MultiplierClass, Status, Waves,
-    floquet, nonlinear_mode,
+    Contact, FloquetOptions, Hooks, MatrixKind, MatrixView, Model, MultiplierClass, Status, Waves, floquet,
+    nonlinear_mode,
 };
 use std::f64::consts::TAU;
 
 /// A chain of three masses, the last of which only friction holds.
 fn chain(limit: f64) -> Model {
-    let mut model = Model::new(3).unwrap();
     let stiffness = [1.5, -0.5, 0.0, -0.5, 0.5, 0.0, 0.0, 0.0, 0.0];
     let damping = stiffness.map(|k| 0.05 * k);
     let mass = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.3];
-    for (kind, a) in [
-        (MatrixKind::Mass, mass),
-        (MatrixKind::Damping, damping),
-        (MatrixKind::Stiffness, stiffness),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(3, &a)).unwrap();
-    }
-    model
-        .add_contact(&Contact::jenkins(1, Some(2), 0.4, 1.0, limit))
-        .unwrap();
-    model.add_force(0, 1, 0.3.into()).unwrap();
-    model
+    dense(&mass, &stiffness)
+        .damping(&damping)
+        .contact(Contact::jenkins(1, Some(2), 0.4, 1.0, limit))
+        .force(0, 1, 0.3)
+        .build()
 }
 
 #[test]
@@ -95,11 +89,7 @@ fn points_without_a_motion_in_time_are_refused() {
         ..plain
     };
     assert_eq!(ask(&model, &branch, 0, &bad).status, Status::Argument);
-    let range = ModeOptions {
-        log10_start: -4.0,
-        log10_stop: -3.0,
-        ..ModeOptions::default()
-    };
+    let range = amplitude_range(-4.0, -3.0);
     let mode = nonlinear_mode(&model, &harmonics(3), &range, &mut Hooks::default()).unwrap();
     let refused = ask(&model, &mode, 0, &plain);
     println!("{refused}");
@@ -112,12 +102,7 @@ fn points_without_a_motion_in_time_are_refused() {
 #[test]
 fn multipliers_have_no_unit() {
     let mut state = 7_u64;
-    let mut random = move || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 53) as f64
-    };
+    let mut random = move || random::unit(&mut state);
     for n in 1..=6 {
         let mut matrices = [vec![0.0; n * n], vec![0.0; n * n], vec![0.0; n * n]];
         for (a, (own, other)) in matrices.iter_mut().zip([(1.0, 0.0), (0.05, 0.02), (1.0, 0.4)]) {

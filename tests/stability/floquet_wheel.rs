@@ -1,5 +1,6 @@
 //! Blocks of perturbations of a wheel together have the multipliers of the whole wheel.
 
+use crate::common::models::Structure;
 use crate::common::{BASE, SECTORS, Wheel, harmonics, solve_at};
 use crate::{multipliers, of_class, ordinary};
 use hbvib::{Constant, Contact, Floquet, MatrixKind, MatrixView, Model, MultiplierClass, Speed, Waves};
@@ -60,23 +61,15 @@ fn contacts() -> [Contact; 2] {
 }
 
 fn sector(sectors: usize, engine_order: i64, contacts: &[Contact]) -> Model {
-    let mut model = Model::cyclic(2, sectors).unwrap();
-    for (kind, a) in [
-        (MatrixKind::Mass, MASS),
-        (MatrixKind::Damping, DAMPING),
-        (MatrixKind::Stiffness, STIFFNESS),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(2, &a)).unwrap();
-    }
-    model
-        .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(2, &NEXT))
-        .unwrap();
-    model.set_wave(engine_order);
-    for contact in contacts {
-        model.add_contact(contact).unwrap();
-    }
-    model.add_force(0, 1, 0.6.into()).unwrap();
-    model
+    Structure::cyclic(2, sectors)
+        .mass(&MASS)
+        .damping(&DAMPING)
+        .stiffness(&STIFFNESS)
+        .next(MatrixKind::Stiffness, &NEXT)
+        .wave(engine_order)
+        .contacts(contacts)
+        .force(0, 1, 0.6)
+        .build()
 }
 
 fn wheel(sectors: usize, engine_order: i64, contacts: &[Contact]) -> Model {

@@ -1,11 +1,14 @@
 //! Stability of the motions of the hard cases: which of their solutions a machine would show.
 
 use crate::common::mode_cases::follow;
-use crate::common::{B2, BASE, Blisk, D, R, SECTORS, data, harmonics, number, one_mass, solve_at, sweep};
+use crate::common::models::{Structure, dense};
+use crate::common::{
+    B2, BASE, Blisk, D, R, SECTORS, amplitude_range, data, harmonics, number, omega_range, one_mass, solve_at, sweep,
+};
 use crate::{multipliers, ordinary};
 use hbvib::{
-    Branch, Contact, Floquet, FloquetOptions, ForcedOptions, Hooks, MatrixKind, MatrixView, ModeOptions, Model,
-    SolverOptions, Status, Waves, floquet, forced_response,
+    Branch, Contact, Floquet, FloquetOptions, Hooks, MatrixKind, Model, SolverOptions, Status, Waves, floquet,
+    forced_response,
 };
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -101,22 +104,14 @@ fn sliding_cases_are_stable() {
 #[test]
 fn cases_without_a_periodic_motion_have_no_multipliers() {
     let omega = parameter("HC07", "w");
-    let range = ForcedOptions {
-        omega_start: omega,
-        omega_stop: omega,
-        ..ForcedOptions::default()
-    };
+    let range = omega_range(omega, omega);
     let e = forced_response(&sliding("HC07"), &harmonics(31), &range, &mut Hooks::default()).unwrap_err();
     assert_eq!(e.status, Status::NoBoundedSolution);
     // The model of HC38 is that of HC09 without its force and its damping.
     let mut model = blisk("HC09", 2, 0.03);
     model.clear_forces();
     model.set_rayleigh(0.0, 0.0).unwrap();
-    let range = ModeOptions {
-        log10_start: -4.5,
-        log10_stop: -4.2,
-        ..ModeOptions::default()
-    };
+    let range = amplitude_range(-4.5, -4.2);
     let branch = follow(&model, &harmonics(7), &range);
     let last = branch.points() - 1;
     let e = floquet(&model, &branch, last, &FloquetOptions::default(), &mut Hooks::default()).unwrap_err();
@@ -169,14 +164,12 @@ fn blisk(id: &str, engine_order: i64, ring_mass: f64) -> Model {
         ..BASE
     };
     let a = wheel.matrices();
-    let mut model = Model::cyclic(a.n, SECTORS).unwrap();
-    for (kind, matrix) in [(MatrixKind::Mass, &a.mass), (MatrixKind::Stiffness, &a.own)] {
-        model.set_matrix(kind, &MatrixView::dense(a.n, matrix)).unwrap();
-    }
-    model
-        .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(a.n, &a.next))
-        .unwrap();
-    model.set_wave(engine_order);
+    let mut model = Structure::cyclic(a.n, SECTORS)
+        .mass(&a.mass)
+        .stiffness(&a.own)
+        .next(MatrixKind::Stiffness, &a.next)
+        .wave(engine_order)
+        .build();
     let slider = Contact::jenkins(D, Some(R), parameter(id, "kt"), 1.0, parameter(id, "fc"));
     model.add_contact(&slider).unwrap();
     model.set_rayleigh(0.0, parameter(id, "beta")).unwrap();
@@ -268,18 +261,13 @@ fn a_static_load_is_stable_while_friction_holds_it() {
 fn uncoupled_masses_have_the_multipliers_of_one_mass() {
     let slider = |dof| Contact::jenkins(dof, None, 1.0, 1.0, 0.3);
     let reference = at("HC27", &one_mass(0.02, &slider(0), 0.2), 1.25, 31).radius;
-    let mut repeated = Model::new(2).unwrap();
-    for (kind, a) in [
-        (MatrixKind::Mass, [1.0, 0.0, 0.0, 1.0]),
-        (MatrixKind::Stiffness, [1.0, 0.0, 0.0, 1.0 + 1e-10]),
-        (MatrixKind::Damping, [0.02, 0.0, 0.0, 0.02]),
-    ] {
-        repeated.set_matrix(kind, &MatrixView::dense(2, &a)).unwrap();
-    }
-    repeated.add_contact(&slider(0)).unwrap();
-    repeated.add_force(0, 1, 0.2.into()).unwrap();
-    repeated.add_contact(&slider(1)).unwrap();
-    repeated.add_force(1, 1, 0.2.into()).unwrap();
+    let repeated = dense(&[1.0, 0.0, 0.0, 1.0], &[1.0, 0.0, 0.0, 1.0 + 1e-10])
+        .damping(&[0.02, 0.0, 0.0, 0.02])
+        .contact(slider(0))
+        .force(0, 1, 0.2)
+        .contact(slider(1))
+        .force(1, 1, 0.2)
+        .build();
     let found = at("HC27", &repeated, 1.25, 31);
     assert_eq!(ordinary(&found).len(), 4);
     for mu in ordinary(&found) {
@@ -300,16 +288,11 @@ fn a_light_mass_changes_no_multiplier() {
     .radius;
     let mut last = f64::INFINITY;
     for light in [1e-2, 1e-4, 1e-6] {
-        let mut model = Model::new(2).unwrap();
-        for (kind, a) in [
-            (MatrixKind::Mass, [1.0, 0.0, 0.0, light]),
-            (MatrixKind::Stiffness, [2.0, -1.0, -1.0, 1.0]),
-            (MatrixKind::Damping, [0.04, -0.02, -0.02, 0.02]),
-        ] {
-            model.set_matrix(kind, &MatrixView::dense(2, &a)).unwrap();
-        }
-        model.add_contact(&Contact::jenkins(0, None, 1.0, 1.0, 0.3)).unwrap();
-        model.add_force(0, 1, 0.2.into()).unwrap();
+        let model = dense(&[1.0, 0.0, 0.0, light], &[2.0, -1.0, -1.0, 1.0])
+            .damping(&[0.04, -0.02, -0.02, 0.02])
+            .slider(0, 1.0, 1.0, 0.3)
+            .force(0, 1, 0.2)
+            .build();
         let gap = (at("HC25", &model, 1.25, 31).radius - reference).abs();
         assert!(gap < 0.2 * last, "{light}: {gap}");
         last = gap;

@@ -1,8 +1,9 @@
 //! Hill's method, which is right for laws without memory, finds the multipliers of the flow.
 
+use crate::common::models::dense;
 use crate::common::{all_harmonics, harmonics, solve_at};
 use crate::{multipliers, ordinary};
-use hbvib::{Contact, ContactKind, MatrixKind, MatrixView, Model, Polynomial, Waves};
+use hbvib::{Contact, ContactKind, Model, Polynomial, Waves};
 use nalgebra::{DMatrix, Schur};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -40,17 +41,11 @@ impl Plain {
         for (i, m) in self.mass.iter().enumerate() {
             mass[i * n + i] = *m;
         }
-        let mut model = Model::new(n).unwrap();
-        for (kind, a) in [
-            (MatrixKind::Mass, &mass),
-            (MatrixKind::Damping, &self.damping),
-            (MatrixKind::Stiffness, &self.stiffness),
-        ] {
-            model.set_matrix(kind, &MatrixView::dense(n, a)).unwrap();
-        }
-        model.add_contact(contact).unwrap();
-        model.add_force(0, 1, force.into()).unwrap();
-        model
+        dense(&mass, &self.stiffness)
+            .damping(&self.damping)
+            .contact(contact)
+            .force(0, 1, force)
+            .build()
     }
 }
 

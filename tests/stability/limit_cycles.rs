@@ -2,23 +2,18 @@
 //! multiplier.
 
 use crate::common::mode_cases::follow;
-use crate::common::{BASE, harmonics};
+use crate::common::models::dense;
+use crate::common::{BASE, amplitude_range, harmonics};
 use crate::{multipliers, of_class, ordinary};
-use hbvib::{Branch, Contact, MatrixKind, MatrixView, ModeChoice, ModeOptions, Model, MultiplierClass, Waves};
+use hbvib::{Branch, Contact, ModeChoice, ModeOptions, Model, MultiplierClass, Waves};
 use num_complex::Complex64;
 
 /// Two masses, the first with negative damping, and friction between them.
 fn two_masses() -> Model {
-    let mut model = Model::new(2).unwrap();
-    for (kind, a) in [
-        (MatrixKind::Mass, [1.0, 0.0, 0.0, 0.5]),
-        (MatrixKind::Damping, [-0.02, 0.0, 0.0, 0.01]),
-        (MatrixKind::Stiffness, [1.1, -0.1, -0.1, 0.5]),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(2, &a)).unwrap();
-    }
-    model.add_contact(&Contact::jenkins(0, Some(1), 0.5, 0.5, 0.2)).unwrap();
-    model
+    dense(&[1.0, 0.0, 0.0, 0.5], &[1.1, -0.1, -0.1, 0.5])
+        .damping(&[-0.02, 0.0, 0.0, 0.01])
+        .contact(Contact::jenkins(0, Some(1), 0.5, 0.5, 0.2))
+        .build()
 }
 
 fn amplitudes(branch: &Branch, point: usize) -> [f64; 2] {
@@ -30,11 +25,7 @@ fn amplitudes(branch: &Branch, point: usize) -> [f64; 2] {
 #[test]
 fn friction_limits_the_flutter_of_two_masses() {
     let model = two_masses();
-    let range = ModeOptions {
-        log10_start: -2.0,
-        log10_stop: 2.0,
-        ..ModeOptions::default()
-    };
+    let range = amplitude_range(-2.0, 2.0);
     let branch = follow(&model, &harmonics(31), &range);
     let cycles = branch.limit_cycles().unwrap();
     for cycle in &cycles {
@@ -63,11 +54,7 @@ fn friction_limits_the_flutter_of_two_masses() {
 /// The same to eight digits: harmonic balance with so many harmonics is the motion in time.
 #[test]
 fn the_limit_cycle_of_two_masses_has_the_amplitudes_of_its_reference() {
-    let range = ModeOptions {
-        log10_start: -2.0,
-        log10_stop: 2.0,
-        ..ModeOptions::default()
-    };
+    let range = amplitude_range(-2.0, 2.0);
     let mut errors = Vec::new();
     for highest in [31, 127] {
         let branch = follow(&two_masses(), &harmonics(highest), &range);
@@ -92,9 +79,7 @@ fn the_outer_limit_cycle_of_two_masses_is_unstable() {
     let model = two_masses();
     let range = ModeOptions {
         choice: ModeChoice::Index(1),
-        log10_start: -2.0,
-        log10_stop: 2.0,
-        ..ModeOptions::default()
+        ..amplitude_range(-2.0, 2.0)
     };
     let branch = follow(&model, &harmonics(31), &range);
     let cycles = branch.limit_cycles().unwrap();
@@ -117,9 +102,7 @@ fn the_ring_damper_flutters_in_a_wave() {
     model.clear_forces();
     let range = ModeOptions {
         diameter: Some(2),
-        log10_start: -6.0,
-        log10_stop: -1.0,
-        ..ModeOptions::default()
+        ..amplitude_range(-6.0, -1.0)
     };
     let branch = follow(&model, &harmonics(31), &range);
     let cycles = branch.limit_cycles().unwrap();

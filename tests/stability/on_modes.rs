@@ -1,10 +1,11 @@
 //! Multipliers on modes of a structure are those on all its degrees of freedom, within the change from half as many modes.
 
+use crate::common::models::{Structure, chain_stiffness, dense, diagonal};
 use crate::common::{harmonics, solve_at};
 use crate::of_class;
 use hbvib::{
-    Branch, Contact, ContactKind, Error, Floquet, FloquetOptions, Hooks, MatrixKind, MatrixView, Model,
-    MultiplierClass, Polynomial, SolverOptions, Table, Waves, floquet,
+    Branch, Contact, ContactKind, Error, Floquet, FloquetOptions, Hooks, MatrixKind, Model, MultiplierClass,
+    Polynomial, SolverOptions, Table, Waves, floquet,
 };
 use std::time::Instant;
 
@@ -23,40 +24,22 @@ fn on(model: &Model, branch: &Branch, modes: Option<usize>, waves: Waves) -> Flo
 
 /// Mass and stiffness of a bar of lumps that becomes thinner towards its end, held at one end.
 fn bar(n: usize) -> (Vec<f64>, Vec<f64>) {
-    let (mut mass, mut stiffness) = (vec![0.0; n * n], vec![0.0; n * n]);
-    for i in 0..n {
-        let thickness = 1.0 - 0.6 * i as f64 / n as f64;
-        mass[i * n + i] = thickness * thickness / n as f64;
-        let k = 3.0 * thickness * n as f64;
-        stiffness[i * n + i] += k;
-        if i > 0 {
-            stiffness[(i - 1) * n + i - 1] += k;
-            stiffness[(i - 1) * n + i] -= k;
-            stiffness[i * n + i - 1] -= k;
-        }
-    }
-    (mass, stiffness)
-}
-
-fn set_bar(model: &mut Model, mass: &[f64], stiffness: &[f64]) {
-    let n = model.ndof();
-    for (kind, values) in [(MatrixKind::Mass, mass), (MatrixKind::Stiffness, stiffness)] {
-        model.set_matrix(kind, &MatrixView::dense(n, values)).unwrap();
-    }
+    let thickness = |i: usize| 1.0 - 0.6 * i as f64 / n as f64;
+    let mass: Vec<f64> = (0..n).map(|i| thickness(i) * thickness(i) / n as f64).collect();
+    let mut springs: Vec<f64> = (0..n).map(|i| 3.0 * thickness(i) * n as f64).collect();
+    springs.push(0.0);
+    (diagonal(&mass), chain_stiffness(&springs))
 }
 
 fn held_bar(n: usize, contacts: &[Contact], force: f64) -> Model {
     let (mass, stiffness) = bar(n);
-    let mut model = Model::new(n).unwrap();
-    set_bar(&mut model, &mass, &stiffness);
-    model.set_rayleigh(0.1, 0.02).unwrap();
-    for contact in contacts {
-        model.add_contact(contact).unwrap();
-    }
-    // Not where a contact acts.
-    model.add_force(n - 4, 1, force.into()).unwrap();
-    model.add_force(n / 3, 3, (0.2 * force).into()).unwrap();
-    model
+    // The forces are not where a contact acts.
+    dense(&mass, &stiffness)
+        .rayleigh(0.1, 0.02)
+        .contacts(contacts)
+        .force(n - 4, 1, force)
+        .force(n / 3, 3, 0.2 * force)
+        .build()
 }
 
 /// One case of every law that integration in time takes.
@@ -202,19 +185,19 @@ fn sectors_have_the_multipliers_of_all_degrees_of_freedom() {
     ] {
         let mut next = vec![0.0; n * n];
         (next[1], next[n]) = (-0.3, -0.1);
-        let mut model = Model::cyclic(n, 8).unwrap();
-        set_bar(&mut model, &mass, &stiffness);
-        model
-            .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(n, &next))
-            .unwrap();
-        model.set_rayleigh(0.05, 0.005).unwrap();
-        model.set_wave(engine_order);
         let contact = Contact {
             sector_offset: 1,
             ..Contact::jenkins(n - 1, Some(n - 2), 2.0, 0.5, 0.2)
         };
-        model.add_contact(&contact).unwrap();
-        model.add_force(n - 3, 1, 0.3.into()).unwrap();
+        let model = Structure::cyclic(n, 8)
+            .mass(&mass)
+            .stiffness(&stiffness)
+            .next(MatrixKind::Stiffness, &next)
+            .rayleigh(0.05, 0.005)
+            .wave(engine_order)
+            .contact(contact)
+            .force(n - 3, 1, 0.3)
+            .build();
         let branch = solve_at(&model, &harmonics(21), 2.9);
         let all = on(&model, &branch, Some(0), waves);
         for (modes, bound) in [(6, 1e-2), (100, 1e-8)] {
@@ -237,11 +220,11 @@ fn a_rigid_motion_stays_neutral_on_modes() {
     let n = 24;
     let (mass, mut stiffness) = bar(n);
     stiffness[0] -= 3.0 * n as f64;
-    let mut model = Model::new(n).unwrap();
-    set_bar(&mut model, &mass, &stiffness);
-    model.set_rayleigh(0.0, 0.02).unwrap();
-    model.add_contact(&Contact::jenkins(0, None, 3.0, 0.5, 0.2)).unwrap();
-    model.add_force(n - 1, 1, 0.4.into()).unwrap();
+    let model = dense(&mass, &stiffness)
+        .rayleigh(0.0, 0.02)
+        .slider(0, 3.0, 0.5, 0.2)
+        .force(n - 1, 1, 0.4)
+        .build();
     let branch = solve_at(&model, &harmonics(25), 2.0);
     for modes in [Some(0), Some(12)] {
         let found = on(&model, &branch, modes, Waves::Wave);

@@ -1,6 +1,6 @@
 //! Detached curves that no nonlinear mode shows: by peaks and folds over the force, and by deflation.
 
-use crate::common::{all_harmonics, harmonics, one_mass};
+use crate::common::{all_harmonics, harmonics, omega_range, one_mass};
 use hbvib::{
     Branch, Contact, ContactKind, Follow, ForcedOptions, Hooks, Model, Parameter, ParameterRange, Polynomial,
     SolverOptions, Status, VerifyOptions, forced_response, parameter_response, verify,
@@ -15,10 +15,8 @@ fn falling_damping(force: f64) -> Model {
 
 fn sought(model: &Model, solver: &SolverOptions, (from, to): (f64, f64), branches: usize) -> Branch {
     let range = ForcedOptions {
-        omega_start: from,
-        omega_stop: to,
         branches,
-        ..ForcedOptions::default()
+        ..omega_range(from, to)
     };
     forced_response(model, solver, &range, &mut Hooks::default()).unwrap()
 }
@@ -135,10 +133,8 @@ fn a_stopped_search_keeps_the_response() {
             ..Hooks::default()
         };
         let range = ForcedOptions {
-            omega_start: 0.95,
-            omega_stop: 1.05,
             branches: 4,
-            ..ForcedOptions::default()
+            ..omega_range(0.95, 1.05)
         };
         let branch = forced_response(&model, &harmonics(3), &range, &mut hooks).unwrap();
         (checks.get(), branch.points(), branch.children().len(), branch.status())

@@ -2,9 +2,11 @@
 //! contacts stuck the multipliers of the wheel are e^{λT} with the eigenvalues λ of all signed diameters, and a flow and its
 //! mirror image have the same limit cycles in opposite waves.
 
+use crate::common::models::Structure;
+use crate::common::{amplitude_range, harmonics, omega_range};
 use hbvib::{
-    AeroForm, Contact, FloquetOptions, ForcedOptions, Hooks, LinearContacts, MatrixKind, MatrixView, ModeOptions,
-    Model, MultiplierClass, SolverOptions, Speed, Waves, damped_modes, floquet, forced_response, nonlinear_mode,
+    AeroForm, Contact, FloquetOptions, Hooks, LinearContacts, MatrixKind, MatrixView, ModeOptions, Model,
+    MultiplierClass, Speed, Waves, damped_modes, floquet, forced_response, nonlinear_mode,
 };
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -58,16 +60,8 @@ fn sector(engine_order: i64, held: &[usize]) -> Model {
 
 /// Largest distance of an ordinary multiplier from e^{λT} or its conjugate, of those that are there.
 fn worst(model: &Model, options: &FloquetOptions, diameters: &[i64]) -> (f64, usize) {
-    let solver = SolverOptions {
-        harmonics: 1,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    };
-    let at = ForcedOptions {
-        omega_start: OMEGA,
-        omega_stop: OMEGA,
-        ..ForcedOptions::default()
-    };
+    let solver = harmonics(1);
+    let at = omega_range(OMEGA, OMEGA);
     let branch = forced_response(model, &solver, &at, &mut Hooks::default()).unwrap();
     let found = floquet(model, &branch, 0, options, &mut Hooks::default()).unwrap();
     let ordinary = found
@@ -122,17 +116,12 @@ fn contacts_on_all_degrees_of_freedom_leave_no_modes_and_no_defect() {
 
 /// A ring with friction, in a flow that drives the waves of one sense.
 fn driven(drive: f64) -> Model {
-    let mut model = Model::cyclic(1, 24).unwrap();
-    for (kind, value) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Stiffness, 1.0),
-        (MatrixKind::Damping, 0.005),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
-    }
-    model
-        .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(1, &[-0.1]))
-        .unwrap();
+    let mut model = Structure::cyclic(1, 24)
+        .mass(&[1.0])
+        .stiffness(&[1.0])
+        .damping(&[0.005])
+        .next(MatrixKind::Stiffness, &[-0.1])
+        .build();
     let contact = Contact {
         sector_offset: 1,
         ..Contact::jenkins(0, Some(0), 0.2, 0.5, 0.02)
@@ -146,18 +135,12 @@ fn driven(drive: f64) -> Model {
 
 #[test]
 fn a_flow_and_its_mirror_image_have_the_same_limit_cycles_in_opposite_waves() {
-    let solver = SolverOptions {
-        harmonics: 9,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    };
+    let solver = harmonics(9);
     let of = |drive: f64, diameter: i64| {
         let model = driven(drive);
         let range = ModeOptions {
             diameter: Some(diameter),
-            log10_start: -3.0,
-            log10_stop: 1.0,
-            ..ModeOptions::default()
+            ..amplitude_range(-3.0, 1.0)
         };
         let branch = nonlinear_mode(&model, &solver, &range, &mut Hooks::default()).unwrap();
         let cycles = branch.limit_cycles().unwrap();

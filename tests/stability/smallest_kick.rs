@@ -1,10 +1,11 @@
 //! The smallest kick that leads from a motion to another one, against integration of its own by Runge and Kutta: just below it the motion
 //! returns, just above it does not, and no kick at other phases that is a few percent smaller leads across.
 
-use crate::common::{harmonics, one_mass};
+use crate::common::models::{Structure, dense};
+use crate::common::{harmonics, omega_range, one_mass};
 use hbvib::{
-    Branch, Contact, ContactKind, FloquetOptions, ForcedOptions, Hooks, Kick, MatrixKind, MatrixView, Model,
-    Polynomial, SolverOptions, Status, Waves, floquet, forced_response, smallest_kick,
+    Branch, Contact, ContactKind, FloquetOptions, ForcedOptions, Hooks, Kick, MatrixKind, Model, Polynomial,
+    SolverOptions, Status, Waves, floquet, forced_response, smallest_kick,
 };
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -49,11 +50,9 @@ impl Oscillator {
 
 fn all(model: &Model, solver: &SolverOptions, range: (f64, f64), omega: f64, branches: usize) -> Branch {
     let range = ForcedOptions {
-        omega_start: range.0,
-        omega_stop: range.1,
         at: &[omega],
         branches,
-        ..ForcedOptions::default()
+        ..omega_range(range.0, range.1)
     };
     forced_response(model, solver, &range, &mut Hooks::default()).unwrap()
 }
@@ -172,16 +171,9 @@ fn points_that_are_no_pair_are_refused() {
 /// Two oscillators without connection, both in their unstable motion: two directions in which perturbations grow.
 #[test]
 fn a_saddle_with_two_unstable_directions_is_refused() {
-    let mut model = Model::new(2).unwrap();
     let unit = [1.0, 0.0, 0.0, 1.0];
     let damping = [0.05, 0.0, 0.0, 0.05];
-    for (kind, values) in [
-        (MatrixKind::Mass, &unit),
-        (MatrixKind::Stiffness, &unit),
-        (MatrixKind::Damping, &damping),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(2, values)).unwrap();
-    }
+    let mut model = dense(&unit, &unit).damping(&damping).build();
     for (dof, force) in [(0, 0.015), (1, 0.01866)] {
         let damper = Polynomial::scalar(&[], &[0.0, 0.0, -0.05, 0.0, 0.012]).unwrap();
         model
@@ -196,10 +188,8 @@ fn a_saddle_with_two_unstable_directions_is_refused() {
             *z = Complex64::new(0.0, -a);
         }
         let range = ForcedOptions {
-            omega_start: 1.0,
-            omega_stop: 1.0,
             guess: Some(&guess),
-            ..ForcedOptions::default()
+            ..omega_range(1.0, 1.0)
         };
         forced_response(&model, &harmonics(5), &range, &mut Hooks::default()).unwrap()
     };
@@ -264,20 +254,15 @@ fn amplitudes_after_kicks((force, omega): (f64, f64), near: Complex64, impulse: 
 #[test]
 fn a_kicked_wave_is_no_wave_any_more() {
     let (force, omega) = (0.25, 1.185);
-    let mut model = Model::cyclic(1, SECTORS).unwrap();
-    for (kind, value) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Stiffness, 1.1),
-        (MatrixKind::Damping, 0.1),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
-    }
-    model
-        .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(1, &[-0.05]))
-        .unwrap();
-    model.add_contact(&Contact::cubic(0, None, 0.0, 0.1)).unwrap();
-    model.set_wave(1);
-    model.add_force(0, 1, force.into()).unwrap();
+    let model = Structure::cyclic(1, SECTORS)
+        .mass(&[1.0])
+        .stiffness(&[1.1])
+        .damping(&[0.1])
+        .next(MatrixKind::Stiffness, &[-0.05])
+        .contact(Contact::cubic(0, None, 0.0, 0.1))
+        .wave(1)
+        .force(0, 1, force)
+        .build();
     let found = all(&model, &harmonics(7), (0.9, 1.5), omega, 0);
     let mut at: Vec<_> = found.at(0).to_vec();
     at.sort_by(|a, b| a.amplitude.total_cmp(&b.amplitude));

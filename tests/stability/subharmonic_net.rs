@@ -1,6 +1,6 @@
 //! A subharmonic curve under hard forcing, found without a guess: against an integration over many periods.
 
-use crate::common::{harmonics, one_mass};
+use crate::common::{harmonics, omega_range, one_mass};
 use hbvib::{Contact, ContactKind, ForcedOptions, Hooks, Polynomial, VerifyOptions, forced_response, verify};
 use num_complex::Complex64;
 
@@ -11,12 +11,10 @@ fn a_subharmonic_of_order_three_is_found_beside_the_response() {
     let law = Polynomial::scalar(&[0.0, 0.0, 0.4], &[0.0, 0.0, 0.002]).unwrap();
     let model = one_mass(0.01, &Contact::between(0, None, ContactKind::Polynomial(law)), 8.0);
     let range = ForcedOptions {
-        omega_start: 3.4,
-        omega_stop: 3.8,
         at: &[3.6],
         branches: 3,
         branch_depth: 1,
-        ..ForcedOptions::default()
+        ..omega_range(3.4, 3.8)
     };
     let found = forced_response(&model, &harmonics(5), &range, &mut Hooks::default()).unwrap();
     println!("{:?}", found.searched());

@@ -1,37 +1,17 @@
 //! Missions: cycles, amplitudes and damage over speeds against time.
 
+use crate::common::chains::rubbing_mass;
+use crate::common::models::unit_chain;
+use crate::common::{amplitude_range, at_dof, harmonics, omega_range};
 use hbvib::{
-    Branch, CampbellResponseOptions, Contact, ForcedOptions, Hooks, Interrupt, MatrixKind, MatrixView, MissionOptions,
-    ModeChoice, ModeOptions, Model, RunUpOptions, SolverOptions, Status, SweepOptions, Woehler, campbell_response,
-    forced_response, mission, nonlinear_mode, run_up, sweep,
+    Branch, CampbellResponseOptions, Hooks, Interrupt, MissionOptions, ModeChoice, ModeOptions, Model, RunUpOptions,
+    Status, SweepOptions, Woehler, campbell_response, forced_response, mission, nonlinear_mode, run_up, sweep,
 };
 use std::f64::consts::TAU;
 
-fn oscillator(force: f64) -> Model {
-    let mut model = Model::new(1).unwrap();
-    for (which, value) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Stiffness, 1.0),
-        (MatrixKind::Damping, 0.02),
-    ] {
-        model.set_matrix(which, &MatrixView::dense(1, &[value])).unwrap();
-    }
-    model.add_contact(&Contact::jenkins(0, None, 0.2, 0.1, 1.0)).unwrap();
-    model.add_force(0, 1, force.into()).unwrap();
-    model
-}
-
 fn mode(model: &Model) -> Branch {
-    let solver = SolverOptions {
-        harmonics: 5,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    };
-    let range = ModeOptions {
-        log10_start: -2.0,
-        log10_stop: 0.8,
-        ..ModeOptions::default()
-    };
+    let solver = harmonics(5);
+    let range = amplitude_range(-2.0, 0.8);
     nonlinear_mode(model, &solver, &range, &mut Hooks::default()).unwrap()
 }
 
@@ -45,7 +25,7 @@ const LINE: Woehler = Woehler {
 /// At a constant speed the damage is that of the steady amplitude, whose closed form is that of an oscillator with a stuck spring.
 #[test]
 fn a_dwell_has_the_closed_form() {
-    let model = oscillator(0.01);
+    let model = rubbing_mass(0.01);
     let branch = mode(&model);
     let omega: f64 = 1.05;
     let options = MissionOptions {
@@ -78,7 +58,7 @@ fn a_dwell_has_the_closed_form() {
 /// are those of the phase.
 #[test]
 fn passages_are_those_of_run_ups() {
-    let model = oscillator(0.12);
+    let model = rubbing_mass(0.12);
     let branch = mode(&model);
     for (rate, allowed) in [(1e-2, 1e-2), (1e-3, 1e-2), (1e-5, 3e-3)] {
         let (start, stop) = (0.8, 1.3);
@@ -124,7 +104,7 @@ fn passages_are_those_of_run_ups() {
 /// Ten thousand points in which the frequency passes the resonance five times.
 #[test]
 fn ten_thousand_points_are_quick() {
-    let model = oscillator(0.12);
+    let model = rubbing_mass(0.12);
     let branch = mode(&model);
     let count = 10_000;
     let times: Vec<f64> = (0..count).map(|i| 50.0 * f64::from(i)).collect();
@@ -151,45 +131,25 @@ fn ten_thousand_points_are_quick() {
 
 /// Masses in a row with three sliders.
 fn chain(n: usize) -> Model {
-    let (mut m, mut k) = (vec![0.0; n * n], vec![0.0; n * n]);
-    for i in 0..n {
-        m[i * n + i] = 1.0;
-        k[i * n + i] = 2.0;
-        if i > 0 {
-            k[i * n + i - 1] = -1.0;
-            k[(i - 1) * n + i] = -1.0;
-        }
-    }
-    let mut model = Model::new(n).unwrap();
-    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &m)).unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &k))
-        .unwrap();
-    model.set_rayleigh(0.0, 0.02).unwrap();
-    for (dof, kt, load) in [(0, 0.2, 0.5), (2, 0.1, 0.3), (n - 1, 0.2, 0.5)] {
-        model.add_contact(&Contact::jenkins(dof, None, kt, 0.1, load)).unwrap();
-    }
-    model.add_force(n - 1, 1, 0.05.into()).unwrap();
-    model
+    unit_chain(n)
+        .rayleigh(0.0, 0.02)
+        .slider(0, 0.2, 0.1, 0.5)
+        .slider(2, 0.1, 0.1, 0.3)
+        .slider(n - 1, 0.2, 0.1, 0.5)
+        .force(n - 1, 1, 0.05)
+        .build()
 }
 
 /// A speed that rises at ten thousand points through the resonances of five modes: the missions of all of them, whose modes are known.
 #[test]
 fn five_modes_over_ten_thousand_points() {
     let model = chain(5);
-    let solver = SolverOptions {
-        harmonics: 3,
-        response_dof: Some(4),
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    };
+    let solver = at_dof(4, harmonics(3));
     let modes: Vec<Branch> = (0..5)
         .map(|mode| {
             let range = ModeOptions {
                 choice: ModeChoice::Index(mode),
-                log10_start: -3.0,
-                log10_stop: 1.0,
-                ..ModeOptions::default()
+                ..amplitude_range(-3.0, 1.0)
             };
             nonlinear_mode(&model, &solver, &range, &mut Hooks::default()).unwrap()
         })
@@ -234,7 +194,7 @@ fn five_modes_over_ten_thousand_points() {
 /// harmonics that a mission leaves out and to its slider without memory.
 #[test]
 fn resonances_of_a_diagram_are_peaks_and_sweeps() {
-    let model = oscillator(0.12);
+    let model = rubbing_mass(0.12);
     let branch = mode(&model);
     let (order, factors) = (2.0, [0.5, 1.0]);
     for acceleration in [0.0, 5e-4, -5e-4] {
@@ -246,17 +206,9 @@ fn resonances_of_a_diagram_are_peaks_and_sweeps() {
         };
         let found = campbell_response(&branch, &model, &options, &Interrupt::none()).unwrap();
         for (one, factor) in found.iter().zip(factors) {
-            let forced = oscillator(0.12 * factor);
-            let range = ForcedOptions {
-                omega_start: 0.8,
-                omega_stop: 1.3,
-                ..ForcedOptions::default()
-            };
-            let solver = SolverOptions {
-                harmonics: 5,
-                tolerance: 0.0,
-                ..SolverOptions::default()
-            };
+            let forced = rubbing_mass(0.12 * factor);
+            let range = omega_range(0.8, 1.3);
+            let solver = harmonics(5);
             let peak = forced_response(&forced, &solver, &range, &mut Hooks::default())
                 .unwrap()
                 .peaks()[0];
@@ -286,7 +238,7 @@ fn resonances_of_a_diagram_are_peaks_and_sweeps() {
 
 #[test]
 fn bad_missions_are_refused() {
-    let model = oscillator(0.12);
+    let model = rubbing_mass(0.12);
     let branch = mode(&model);
     let options = MissionOptions {
         times: &[0.0, 1.0],

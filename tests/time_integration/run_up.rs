@@ -1,23 +1,9 @@
 //! Sweeps of the frequency in time, against stored runs by Taylor series with events and by DOP853, and closed limits.
 
+use crate::common::chains::rubbing_mass;
+use crate::common::models::{dense, oscillator};
 use crate::common::{data, number};
-use hbvib::{Contact, Hooks, MatrixKind, MatrixView, Model, Status, SweepOptions, TimeOptions, sweep, time_response};
-
-fn oscillator(friction: bool, force: f64) -> Model {
-    let mut model = Model::new(1).unwrap();
-    for (which, value) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Stiffness, 1.0),
-        (MatrixKind::Damping, 0.02),
-    ] {
-        model.set_matrix(which, &MatrixView::dense(1, &[value])).unwrap();
-    }
-    if friction {
-        model.add_contact(&Contact::jenkins(0, None, 0.2, 0.1, 1.0)).unwrap();
-    }
-    model.add_force(0, 1, force.into()).unwrap();
-    model
-}
+use hbvib::{Contact, Hooks, Model, Status, SweepOptions, TimeOptions, sweep, time_response};
 
 /// The largest displacement to 1e-9 and its frequency, in both senses. That of the frequency is known to half of the digits alone.
 #[test]
@@ -28,7 +14,8 @@ fn runs_through_a_resonance_are_those_of_stored_ones() {
         ("friction", true, 0.05, (0.85, 1.3)),
         ("friction_strong", true, 0.12, (0.8, 1.3)),
     ] {
-        let model = oscillator(friction, force);
+        let smooth = oscillator(1.0, 1.0).damping(&[0.02]).force(0, 1, force).build();
+        let model = if friction { rubbing_mass(force) } else { smooth };
         for (text, rate) in [("0.01", 0.01), ("-0.01", -0.01), ("0.001", 0.001), ("-0.001", -0.001)] {
             let wanted = &runs[format!("{case} {text}").as_str()];
             let (omega_start, omega_stop) = if rate > 0.0 { range } else { (range.1, range.0) };
@@ -67,9 +54,9 @@ fn runs_through_a_resonance_are_those_of_stored_ones() {
 /// A very slow sweep over a narrow range vibrates as the periodic motion of its middle does, a smooth law as well as friction.
 #[test]
 fn a_slow_sweep_is_nearly_periodic() {
-    let mut smooth = oscillator(false, 0.05);
+    let mut smooth = oscillator(1.0, 1.0).damping(&[0.02]).force(0, 1, 0.05).build();
     smooth.add_contact(&Contact::cubic(0, None, 0.0, 0.3)).unwrap();
-    for model in [oscillator(true, 0.12), smooth] {
+    for model in [rubbing_mass(0.12), smooth] {
         let options = SweepOptions {
             omega_start: 0.9,
             omega_stop: 0.9001,
@@ -98,7 +85,7 @@ fn a_slow_sweep_is_nearly_periodic() {
 
 #[test]
 fn bad_sweeps_are_refused() {
-    let model = oscillator(true, 0.05);
+    let model = rubbing_mass(0.05);
     let options = SweepOptions {
         omega_start: 0.9,
         omega_stop: 1.1,
@@ -132,13 +119,7 @@ fn bad_sweeps_are_refused() {
         Status::NotFinite,
         "omega_stop",
     );
-    let mut unbalanced = Model::new(2).unwrap();
-    unbalanced
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(2, &[1.0, 0.0, 0.0, 1.0]))
-        .unwrap();
-    unbalanced
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(2, &[1.0, 0.0, 0.0, 1.0]))
-        .unwrap();
+    let mut unbalanced = dense(&[1.0, 0.0, 0.0, 1.0], &[1.0, 0.0, 0.0, 1.0]).build();
     unbalanced.add_unbalance(0, 1, 0.1, 0.0).unwrap();
     refused(&unbalanced, options, Status::Unsupported, "unbalance");
     let mut stopping = |state: &hbvib::Progress| state.point >= 3;

@@ -1,58 +1,33 @@
 //! Run-ups by the slow flow of a nonlinear mode, against integration in time.
 
+use crate::common::chains::rubbing_mass;
+use crate::common::models::{self, dense, oscillator};
+use crate::common::random;
+use crate::common::{amplitude_range, at_dof, harmonics};
 use hbvib::{
-    Branch, Contact, Hooks, Interrupt, MatrixKind, MatrixView, ModeOptions, Model, RunUp, RunUpOptions, SolverOptions,
-    Status, SweepOptions, nonlinear_mode, run_up, sweep,
+    Branch, Contact, Hooks, Interrupt, MatrixKind, MatrixView, Model, RunUp, RunUpOptions, Status, SweepOptions,
+    nonlinear_mode, run_up, sweep,
 };
-
-fn oscillator(force: f64) -> Model {
-    let mut model = Model::new(1).unwrap();
-    for (which, value) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Stiffness, 1.0),
-        (MatrixKind::Damping, 0.02),
-    ] {
-        model.set_matrix(which, &MatrixView::dense(1, &[value])).unwrap();
-    }
-    model.add_contact(&Contact::jenkins(0, None, 0.2, 0.1, 1.0)).unwrap();
-    model.add_force(0, 1, force.into()).unwrap();
-    model
-}
 
 /// Three masses on springs with one to three sliders.
 fn chain(force: f64, contacts: usize) -> Model {
-    let mut model = Model::new(3).unwrap();
     let m = [1.0, 0.0, 0.0, 0.0, 1.2, 0.0, 0.0, 0.0, 0.8];
     let k = [3.0, -1.0, 0.0, -1.0, 2.0, -1.0, 0.0, -1.0, 1.5];
-    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(3, &m)).unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(3, &k))
-        .unwrap();
-    model.set_rayleigh(0.0, 0.02).unwrap();
     let all = [
         Contact::jenkins(2, None, 0.2, 0.1, 1.0),
         Contact::jenkins(1, Some(0), 0.3, 0.1, 0.5),
         Contact::jenkins(1, None, 0.1, 0.1, 0.3),
     ];
-    for contact in &all[..contacts] {
-        model.add_contact(contact).unwrap();
-    }
-    model.add_force(2, 1, force.into()).unwrap();
-    model
+    dense(&m, &k)
+        .rayleigh(0.0, 0.02)
+        .contacts(&all[..contacts])
+        .force(2, 1, force)
+        .build()
 }
 
 fn mode(model: &Model, harmonics: usize) -> Branch {
-    let solver = SolverOptions {
-        harmonics,
-        response_dof: Some(model.ndof() - 1),
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    };
-    let range = ModeOptions {
-        log10_start: -2.0,
-        log10_stop: 0.8,
-        ..ModeOptions::default()
-    };
+    let solver = at_dof(model.ndof() - 1, crate::common::harmonics(harmonics));
+    let range = amplitude_range(-2.0, 0.8);
     nonlinear_mode(model, &solver, &range, &mut Hooks::default()).unwrap()
 }
 
@@ -137,10 +112,10 @@ const NEAR: f64 = 3e-3;
 
 #[test]
 fn the_error_told_bounds_that_of_one_slider() {
-    check("one slider", &oscillator(0.05), 9, (0.85, 1.3), (&[2e-3], NEAR));
+    check("one slider", &rubbing_mass(0.05), 9, (0.85, 1.3), (&[2e-3], NEAR));
     check(
         "much slip",
-        &oscillator(0.12),
+        &rubbing_mass(0.12),
         9,
         (0.8, 1.3),
         (&[1e-2, 1e-3, 1e-4], NEAR),
@@ -162,7 +137,7 @@ fn the_error_told_bounds_that_of_a_chain() {
 /// Only the turns around the largest displacement are integrated where the rate is small; without any the slow flow is told.
 #[test]
 fn a_slow_run_up_is_integrated_around_its_largest_displacement() {
-    let model = oscillator(0.05);
+    let model = rubbing_mass(0.05);
     let branch = mode(&model, 9);
     let one = compared((&model, &branch), (0.85, 1.3), (5e-5, 10_000));
     assert!(
@@ -186,8 +161,8 @@ const RATES: [f64; 10] = [1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 
 #[ignore = "takes minutes; tests/deep.sh runs it"]
 fn ten_rates_of_stored_models() {
     check("linear", &linear(0.05), 3, (0.8, 1.2), (&RATES, NEAR));
-    check("one slider", &oscillator(0.05), 15, (0.85, 1.3), (&RATES, NEAR));
-    check("much slip", &oscillator(0.12), 15, (0.8, 1.3), (&RATES, NEAR));
+    check("one slider", &rubbing_mass(0.05), 15, (0.85, 1.3), (&RATES, NEAR));
+    check("much slip", &rubbing_mass(0.12), 15, (0.8, 1.3), (&RATES, NEAR));
 }
 
 /// Ten rates, in both directions.
@@ -201,7 +176,7 @@ fn ten_rates_of_one_to_three_sliders() {
 }
 
 fn linear(force: f64) -> Model {
-    let mut model = oscillator(force);
+    let mut model = rubbing_mass(force);
     model.set_preload(0, 1e9).unwrap();
     let stiff = MatrixView::dense(1, &[0.8]);
     // The slider sticks for ever: a spring of 0.2 beside one of 0.8.
@@ -214,34 +189,18 @@ struct Random(u64);
 
 impl Random {
     fn next(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        low + (high - low) * (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+        low + (high - low) * random::unit(&mut self.0)
     }
 }
 
 /// A chain of one to four masses with one to three sliders.
 fn random_model(random: &mut Random) -> Model {
     let n = 1 + random.next(0.0, 4.0) as usize;
-    let (mut m, mut k) = (vec![0.0; n * n], vec![0.0; n * n]);
-    for i in 0..n {
-        m[i * n + i] = random.next(0.5, 2.0);
-        let spring = random.next(0.5, 2.0);
-        k[i * n + i] += spring;
-        if i > 0 {
-            k[(i - 1) * n + i - 1] += spring;
-            k[i * n + i - 1] -= spring;
-            k[(i - 1) * n + i] -= spring;
-        }
-    }
-    let mut model = Model::new(n).unwrap();
-    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &m)).unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &k))
-        .unwrap();
-    model.set_rayleigh(0.0, random.next(0.01, 0.05)).unwrap();
+    let (mass, mut springs): (Vec<_>, Vec<_>) = (0..n).map(|_| (random.next(0.5, 2.0), random.next(0.5, 2.0))).unzip();
+    springs.push(0.0);
+    let mut model = models::chain(&mass, &springs)
+        .rayleigh(0.0, random.next(0.01, 0.05))
+        .build();
     for _ in 0..=random.next(0.0, 3.0) as usize {
         let dof = random.next(0.0, n as f64) as usize;
         let other = random.next(0.0, n as f64) as usize;
@@ -261,17 +220,8 @@ fn ten_rates_of_random_models() {
     let mut folded = 0;
     for number in 0..12 {
         let model = random_model(&mut random);
-        let solver = SolverOptions {
-            harmonics: 15,
-            response_dof: Some(model.ndof() - 1),
-            tolerance: 0.0,
-            ..SolverOptions::default()
-        };
-        let range = ModeOptions {
-            log10_start: -3.0,
-            log10_stop: 2.5,
-            ..ModeOptions::default()
-        };
+        let solver = at_dof(model.ndof() - 1, harmonics(15));
+        let range = amplitude_range(-3.0, 2.5);
         let branch = nonlinear_mode(&model, &solver, &range, &mut Hooks::default()).unwrap();
         let (low, high) = branch
             .omega()
@@ -330,17 +280,8 @@ fn check_random(name: &str, of: (&Model, &Branch), (low, high): (f64, f64), rate
 fn leads_keep_the_places_of_sliders_that_rest_before() {
     let mut random = Random(20_261_128);
     let model = (0..9).map(|_| random_model(&mut random)).last().unwrap();
-    let solver = SolverOptions {
-        harmonics: 15,
-        response_dof: Some(1),
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    };
-    let range = ModeOptions {
-        log10_start: -3.0,
-        log10_stop: 1.0,
-        ..ModeOptions::default()
-    };
+    let solver = at_dof(1, harmonics(15));
+    let range = amplitude_range(-3.0, 1.0);
     let branch = nonlinear_mode(&model, &solver, &range, &mut Hooks::default()).unwrap();
     // Without the places the error is ten times what was told.
     check_random("three sliders", (&model, &branch), (0.665, 1.147), &[1.83e-4]);
@@ -349,7 +290,7 @@ fn leads_keep_the_places_of_sliders_that_rest_before() {
 /// The memory of a slider is an effect of the first order: with it the error is much less than without.
 #[test]
 fn memory_of_the_slider_takes_the_first_order_away() {
-    let model = oscillator(0.12);
+    let model = rubbing_mass(0.12);
     let branch = mode(&model, 9);
     let one = compared((&model, &branch), (0.8, 1.3), (3e-4, 10_000));
     let without = one.found.without_memory * (1.0 + one.slow_flow) / one.found.slow_flow - 1.0;
@@ -362,7 +303,7 @@ fn memory_of_the_slider_takes_the_first_order_away() {
 
 #[test]
 fn bad_run_ups_are_refused() {
-    let model = oscillator(0.05);
+    let model = rubbing_mass(0.05);
     let branch = mode(&model, 1);
     let options = RunUpOptions {
         omega_start: 0.9,
@@ -398,8 +339,8 @@ fn bad_run_ups_are_refused() {
         Status::Index,
         "dof = 1",
     );
-    refused(&oscillator(9.0), at(1e-4), Status::Argument, "larger amplitude");
-    let mut quiet = oscillator(0.05);
+    refused(&rubbing_mass(9.0), at(1e-4), Status::Argument, "larger amplitude");
+    let mut quiet = rubbing_mass(0.05);
     quiet.clear_forces();
     refused(&quiet, options, Status::Argument, "no force");
     let stopped = || true;
@@ -413,16 +354,11 @@ fn bad_run_ups_are_refused() {
 #[test]
 fn a_false_place_of_the_slow_flow_is_not_that_of_the_result() {
     for (kt, range, rate) in [(1.0, (0.6, 1.372), 1e-3), (2.0, (1.68, 0.6), 1e-3)] {
-        let mut model = Model::new(1).unwrap();
-        for (which, value) in [
-            (MatrixKind::Mass, 1.0),
-            (MatrixKind::Stiffness, 1.0),
-            (MatrixKind::Damping, 0.002),
-        ] {
-            model.set_matrix(which, &MatrixView::dense(1, &[value])).unwrap();
-        }
-        model.add_contact(&Contact::jenkins(0, None, kt, 0.5, 1.0)).unwrap();
-        model.add_force(0, 1, 0.003.into()).unwrap();
+        let model = oscillator(1.0, 1.0)
+            .damping(&[0.002])
+            .slider(0, kt, 0.5, 1.0)
+            .force(0, 1, 0.003)
+            .build();
         let all = compared((&model, &mode(&model, 5)), range, (rate, 10_000));
         println!(
             "{:e} off, {:e} told, {} turns",
@@ -437,14 +373,7 @@ fn a_false_place_of_the_slow_flow_is_not_that_of_the_result() {
 #[test]
 fn an_added_damping_ratio_is_that_of_the_mode() {
     let with = |damping: f64| {
-        let mut model = Model::new(1).unwrap();
-        for (which, value) in [
-            (MatrixKind::Mass, 1.0),
-            (MatrixKind::Stiffness, 1.0),
-            (MatrixKind::Damping, damping),
-        ] {
-            model.set_matrix(which, &MatrixView::dense(1, &[value])).unwrap();
-        }
+        let mut model = oscillator(1.0, 1.0).damping(&[damping]).build();
         // Never slips: the natural frequency is that of both springs.
         model.add_contact(&Contact::jenkins(0, None, 0.44, 1.0, 1e6)).unwrap();
         model.add_force(0, 1, 0.05.into()).unwrap();
@@ -486,7 +415,7 @@ fn an_added_damping_ratio_is_that_of_the_mode() {
 /// it does at a degree of freedom that is not that of the mode.
 #[test]
 fn a_slow_run_up_reaches_the_steady_displacement() {
-    let mut pressed = oscillator(0.05);
+    let mut pressed = rubbing_mass(0.05);
     pressed.add_force(0, 0, 0.4.into()).unwrap();
     let run = |model: &Model, range: (f64, f64), dof: Option<usize>| {
         let options = RunUpOptions {
@@ -500,7 +429,7 @@ fn a_slow_run_up_reaches_the_steady_displacement() {
     };
     let chain = chain(0.03, 1);
     for (name, found) in [
-        ("one mass", run(&oscillator(0.05), (0.95, 1.2), None)),
+        ("one mass", run(&rubbing_mass(0.05), (0.95, 1.2), None)),
         ("pressed", run(&pressed, (0.95, 1.2), None)),
         ("another degree of freedom", run(&chain, (0.7, 0.85), Some(0))),
     ] {

@@ -1,13 +1,13 @@
 //! Periodic responses by integration in time against closed forms, against event-driven integrations
 //! made by other programs, and against harmonic balance with many harmonics.
 
+use crate::common::chains::driven_mass;
+use crate::common::models::dense;
 use crate::common::{
     BASE, Blisk, SECTORS, all_harmonics, complex, data, harmonics, largest, number, phase, relative_gap, solve_at,
     sweep,
 };
-use hbvib::{
-    Contact, Hooks, MatrixKind, MatrixView, Model, Part, Status, SteadyMethod, TimeOptions, TimeResponse, time_response,
-};
+use hbvib::{Contact, Hooks, MatrixKind, Model, Part, Status, SteadyMethod, TimeOptions, TimeResponse, time_response};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -26,23 +26,7 @@ fn solve(model: &Model, options: &TimeOptions<'_>) -> TimeResponse {
 
 /// Mass 1, damping 0.02, stiffness 1, with a contact to the ground.
 fn oscillator(contact: &Contact, forces: &[(usize, f64)]) -> Model {
-    damped_oscillator(0.02, contact, forces)
-}
-
-fn damped_oscillator(damping: f64, contact: &Contact, forces: &[(usize, f64)]) -> Model {
-    let mut model = Model::new(1).unwrap();
-    for (which, a) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Damping, damping),
-        (MatrixKind::Stiffness, 1.0),
-    ] {
-        model.set_matrix(which, &MatrixView::dense(1, &[a])).unwrap();
-    }
-    model.add_contact(contact).unwrap();
-    for &(harmonic, force) in forces {
-        model.add_force(0, harmonic, force.into()).unwrap();
-    }
-    model
+    driven_mass(0.02, contact, forces)
 }
 
 fn jenkins(kt: f64, limit: f64) -> Contact {
@@ -58,22 +42,16 @@ fn stop(kn: f64, gap: f64) -> Contact {
 fn a_linear_structure_moves_as_its_frequency_response_says() {
     // Mass with coupling, damping without symmetry, forces in three harmonics and a constant one.
     let (m, c, k) = ([2.0, 0.3, 0.3, 1.0], [0.3, 0.1, -0.05, 0.2], [5.0, -2.0, -2.0, 4.0]);
-    let mut model = Model::new(2).unwrap();
-    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(2, &m)).unwrap();
-    let general = MatrixView::dense(2, &c).part(Part::General);
-    model.set_matrix(MatrixKind::Damping, &general).unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(2, &k))
-        .unwrap();
     let forces = [
         (0, 0, Complex64::new(0.7, 0.0)),
         (0, 1, Complex64::new(1.0, -0.4)),
         (1, 2, Complex64::new(0.2, 0.9)),
         (1, 5, Complex64::new(-0.5, 0.1)),
     ];
-    for (dof, h, value) in forces {
-        model.add_force(dof, h, value).unwrap();
-    }
+    let model = dense(&m, &k)
+        .part(MatrixKind::Damping, &c, Part::General)
+        .forces(forces)
+        .build();
     for omega in [0.3, 1.1, 1.9] {
         let options = TimeOptions {
             harmonics: 6,
@@ -130,7 +108,7 @@ fn friction_agrees_with_event_driven_integrations_of_others() {
         ),
         (
             "undamped at resonance",
-            damped_oscillator(0.0, &jenkins(1.0, 0.3), &[(1, 0.35)]),
+            driven_mass(0.0, &jenkins(1.0, 0.3), &[(1, 0.35)]),
             1.0,
             0.490_802_178_303_386_2,
             1e-9,
@@ -184,7 +162,7 @@ fn both_states_of_a_gap_oscillator_are_found_from_their_side() {
 
 #[test]
 fn duffings_peak_is_that_of_two_other_methods() {
-    let model = damped_oscillator(0.05, &Contact::cubic(0, None, 0.0, 0.1), &[(1, 0.18)]);
+    let model = driven_mass(0.05, &Contact::cubic(0, None, 0.0, 0.1), &[(1, 0.18)]);
     let omega = 1.268_716_736_0;
     let start = swept(&model, 7, 1.0, omega);
     let found = solve(
@@ -327,7 +305,7 @@ fn the_wheel_comes_into_the_wave_from_rest() {
 fn marching_and_shooting_end_in_the_same_motion() {
     let contacts = [jenkins(1.0, 0.3), stop(3.0, 0.1), Contact::cubic(0, None, 0.5, 0.2)];
     for contact in contacts {
-        let model = damped_oscillator(0.1, &contact, &[(0, 0.05), (1, 1.0)]);
+        let model = driven_mass(0.1, &contact, &[(0, 0.05), (1, 1.0)]);
         let options = TimeOptions {
             method: SteadyMethod::Marching,
             ..at(0.8)

@@ -1,6 +1,7 @@
 //! Harmonic balance tends to the motion in time as its harmonics grow: waves with contacts across
 //! sectors, several laws at once, a beam that lifts off its support.
 
+use crate::common::models::dense;
 use crate::common::{SECTORS, Wheel, all_harmonics, harmonics, relative_gap, slip, solve_at, sweep};
 use hbvib::{
     Constant, Contact, Hooks, MatrixKind, MatrixView, Model, Part, Spring, TimeOptions, TimeResponse, time_response,
@@ -165,21 +166,14 @@ fn a_wave_is_the_motion_of_the_whole_wheel() {
 
 #[test]
 fn friction_a_stop_and_a_cubic_spring_at_once_are_what_harmonic_balance_tends_to() {
-    let mut model = Model::new(3).unwrap();
     let chain = |k: f64| [2.0 * k, -k, 0.0, -k, 2.0 * k, -k, 0.0, -k, k];
-    for (which, a) in [
-        (MatrixKind::Mass, [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]),
-        (MatrixKind::Damping, chain(0.1)),
-        (MatrixKind::Stiffness, chain(3.0)),
-    ] {
-        model.set_matrix(which, &MatrixView::dense(3, &a)).unwrap();
-    }
-    model.add_contact(&Contact::jenkins(0, None, 2.0, 0.5, 0.3)).unwrap();
-    model
-        .add_contact(&Contact::unilateral(Some(1), None, 4.0, 0.3))
-        .unwrap();
-    model.add_contact(&Contact::cubic(2, Some(0), 0.4, 0.3)).unwrap();
-    model.add_force(2, 1, 0.4.into()).unwrap();
+    let model = dense(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], &chain(3.0))
+        .damping(&chain(0.1))
+        .slider(0, 2.0, 0.5, 0.3)
+        .contact(Contact::unilateral(Some(1), None, 4.0, 0.3))
+        .contact(Contact::cubic(2, Some(0), 0.4, 0.3))
+        .force(2, 1, 0.4)
+        .build();
     for omega in [0.5, 0.9, 1.7] {
         let start = all_harmonics(&solve_at(&model, &harmonics(15), omega), 0);
         let truth = in_time(&model, omega, 5, Some(&start));
@@ -221,12 +215,7 @@ fn beam(elements: usize, force: f64) -> Model {
             }
         }
     }
-    let mut model = Model::new(n).unwrap();
-    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &m)).unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &k))
-        .unwrap();
-    model.set_rayleigh(0.4, 2e-4).unwrap();
+    let mut model = dense(&m, &k).rayleigh(0.4, 2e-4).build();
     let mut support = Contact::unilateral(Some(n - 2), None, 60.0, 0.0);
     support.set(Constant::Preload, 0.5).unwrap();
     model.add_contact(&support).unwrap();

@@ -4,8 +4,9 @@
 use crate::common::laws_in_time::{
     BETA, COMMON, KN, KT, MASS, SAMPLES, STIFFNESS, distances, forces, friction, in_time, model, slanted, try_in_time,
 };
+use crate::common::models::Structure;
 use crate::common::{all_harmonics, harmonics, relative_gap, solve_at, sweep};
-use hbvib::{Constant, Contact, MatrixKind, MatrixView, Model, SteadyMethod, TimeOptions, TimeResponse};
+use hbvib::{Constant, Contact, MatrixKind, SteadyMethod, TimeOptions, TimeResponse};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -103,7 +104,7 @@ fn friction_with_separation_moves_as_in_small_steps() {
 fn friction_under_a_load_that_stays_is_a_jenkins_contact() {
     // The normal motion is free of the others and not forced: its load is shared by two springs.
     let (m, k, c) = ([1.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 2.0], [0.05, 0.0, 0.0, 0.3]);
-    let of = |contact| model(2, [&m, &c, &k], &[contact], &[(0, 1, 0.5.into())]);
+    let of = |contact| model([&m, &c, &k], &[contact], &[(0, 1, 0.5.into())]);
     let varying = Contact::friction_2d([Some(0), Some(1)], [None, None], (2.0, 3.0), 0.5, 1.0);
     let constant = Contact::jenkins(0, None, 2.0, 0.5, 1.0 * 2.0 / (2.0 + 3.0));
     for omega in [0.6, 1.1] {
@@ -158,22 +159,17 @@ fn marching_and_shooting_end_in_the_same_motion_with_separation() {
 #[test]
 fn friction_across_sectors_of_a_wave_is_what_harmonic_balance_tends_to() {
     for engine_order in [1, -1, 2] {
-        let mut model = Model::cyclic(2, 4).unwrap();
-        for (which, own, next) in [
-            (MatrixKind::Mass, [1.0, 0.1, 0.1, 1.2], [0.0; 4]),
-            (MatrixKind::Stiffness, [3.0, -0.4, -0.4, 2.5], [-0.5, 0.1, -0.2, -0.3]),
-            (MatrixKind::Damping, [0.15, 0.0, 0.0, 0.15], [-0.02, 0.0, 0.0, -0.01]),
-        ] {
-            model.set_matrix(which, &MatrixView::dense(2, &own)).unwrap();
-            model.set_coupling(which, &MatrixView::dense(2, &next)).unwrap();
-        }
-        model.set_wave(engine_order);
         let mut contact = Contact::friction_2d([Some(0), Some(1)], [Some(0), Some(1)], (KT, KN), 0.4, 0.8);
         contact.sector_offset = 1;
-        model.add_contact(&contact).unwrap();
-        for (dof, harmonic, value) in forces(1.5) {
-            model.add_force(dof, harmonic, value).unwrap();
-        }
+        let model = Structure::cyclic(2, 4)
+            .matrices([&[1.0, 0.1, 0.1, 1.2], &[0.15, 0.0, 0.0, 0.15], &[3.0, -0.4, -0.4, 2.5]])
+            .next(MatrixKind::Mass, &[0.0; 4])
+            .next(MatrixKind::Stiffness, &[-0.5, 0.1, -0.2, -0.3])
+            .next(MatrixKind::Damping, &[-0.02, 0.0, 0.0, -0.01])
+            .wave(engine_order)
+            .contact(contact)
+            .forces(forces(1.5))
+            .build();
         let name = format!("EO {engine_order}");
         let (truth, [coarse, fine]) = distances(&name, &model, 1.7, [15, 63]);
         assert!(truth.events >= 3);
@@ -207,7 +203,7 @@ fn masses_pressed_statically_that_lift_off_are_what_harmonic_balance_tends_to() 
         (3, 1, Complex64::new(0.2, 0.7)),
         (5, 1, 0.5.into()),
     ];
-    let model = model(n, [&m, &c, &k], &contacts, &forces);
+    let model = model([&m, &c, &k], &contacts, &forces);
     let mut most = 0;
     for omega in [0.9, 1.6] {
         let branch = sweep(&model, &harmonics(15), 0.5, omega, &[]);

@@ -1,6 +1,7 @@
 //! Inputs that a response in time refuses, and how a caller stops it.
 
 use crate::common::BASE;
+use crate::common::models::{dense, oscillator};
 use crate::common::refusal::{OMEGA, refused};
 use hbvib::{
     Call, Contact, ContactKind, Hooks, MatrixKind, MatrixView, Model, Part, Progress, Status, SteadyMethod,
@@ -88,12 +89,7 @@ fn bad_options_are_refused_with_value_and_range() {
 }
 
 fn two_masses(mass: &[f64; 4]) -> Model {
-    let mut model = Model::new(2).unwrap();
-    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(2, mass)).unwrap();
-    let stiffness = MatrixView::dense(2, &[2.0, -1.0, -1.0, 2.0]);
-    model.set_matrix(MatrixKind::Stiffness, &stiffness).unwrap();
-    model.add_force(0, 1, Complex64::ONE).unwrap();
-    model
+    dense(mass, &[2.0, -1.0, -1.0, 2.0]).force(0, 1, Complex64::ONE).build()
 }
 
 #[test]
@@ -174,13 +170,7 @@ impl UserForce for NotAsked {
 
 /// An undamped oscillator at its resonance, held by friction up to a force of 4 μN₀/π alone.
 fn at_resonance(force: f64) -> Model {
-    let mut model = Model::new(1).unwrap();
-    for which in [MatrixKind::Mass, MatrixKind::Stiffness] {
-        model.set_matrix(which, &MatrixView::dense(1, &[1.0])).unwrap();
-    }
-    model.add_contact(&Contact::jenkins(0, None, 1.0, 1.0, 0.3)).unwrap();
-    model.add_force(0, 1, force.into()).unwrap();
-    model
+    oscillator(1.0, 1.0).slider(0, 1.0, 1.0, 0.3).force(0, 1, force).build()
 }
 
 #[test]

@@ -1,20 +1,20 @@
 //! Points of forced responses checked in time: what the check tells against stored truths, against sums
 //! over the motion itself, and against where the points come from.
 
-use crate::common::{B2, BASE, Blisk, Wheel, all_harmonics, complex, data, number, phase, relative_gap, sweep};
+use crate::common::chains::driven_mass;
+use crate::common::models::{Structure, dense};
+use crate::common::{
+    B2, BASE, Blisk, Wheel, all_harmonics, at_dof, complex, data, harmonics, number, phase, relative_gap, sweep,
+};
 use hbvib::{
-    Branch, Contact, Hooks, MatrixKind, MatrixView, Model, SolverOptions, Status, SteadyMethod, TimeOptions,
-    Verification, VerifyOptions, estimate_at, time_response, verify,
+    Branch, Contact, Hooks, MatrixKind, Model, SolverOptions, Status, SteadyMethod, TimeOptions, Verification,
+    VerifyOptions, estimate_at, time_response, verify,
 };
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 fn options(highest: usize) -> SolverOptions {
-    SolverOptions {
-        harmonics: highest,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    }
+    harmonics(highest)
 }
 
 fn at(model: &Model, highest: usize, omega: f64) -> Branch {
@@ -39,23 +39,6 @@ fn checked(model: &Model, branch: &Branch, point: usize) -> Verification {
     v
 }
 
-/// Mass 1, stiffness 1, with a contact to the ground.
-fn oscillator(damping: f64, contact: &Contact, forces: &[(usize, f64)]) -> Model {
-    let mut model = Model::new(1).unwrap();
-    for (which, a) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Damping, damping),
-        (MatrixKind::Stiffness, 1.0),
-    ] {
-        model.set_matrix(which, &MatrixView::dense(1, &[a])).unwrap();
-    }
-    model.add_contact(contact).unwrap();
-    for &(harmonic, force) in forces {
-        model.add_force(0, harmonic, force.into()).unwrap();
-    }
-    model
-}
-
 /// Mean square over the period and the degrees of freedom of coefficients, mean and all.
 fn square<'a>(x: impl Iterator<Item = &'a [Complex64]>) -> f64 {
     x.enumerate()
@@ -68,10 +51,7 @@ fn reference_omega() -> f64 {
 }
 
 fn tip(highest: usize) -> SolverOptions {
-    SolverOptions {
-        response_dof: Some(B2),
-        ..options(highest)
-    }
+    at_dof(B2, options(highest))
 }
 
 #[test]
@@ -135,7 +115,7 @@ fn the_error_estimate_is_the_error_that_the_check_finds() {
 
 #[test]
 fn the_distance_is_that_of_the_two_motions_time_by_time() {
-    let model = oscillator(0.02, &Contact::jenkins(0, None, 1.0, 1.0, 0.3), &[(0, 0.1), (1, 0.2)]);
+    let model = driven_mass(0.02, &Contact::jenkins(0, None, 1.0, 1.0, 0.3), &[(0, 0.1), (1, 0.2)]);
     let (omega, times) = (1.25, 20_000);
     for highest in [1, 3, 9] {
         let branch = at(&model, highest, omega);
@@ -196,8 +176,8 @@ fn what_lies_above_is_what_more_harmonics_in_time_show() {
 #[test]
 fn points_that_stick_or_are_linear_have_no_error() {
     let stuck = Blisk { force: 0.05, ..BASE };
-    let free = oscillator(0.02, &Contact::jenkins(0, None, 1.0, 0.0, 1.0), &[(0, 0.3), (1, 0.2)]);
-    let held = oscillator(0.02, &Contact::jenkins(0, None, 1.0, 1.0, 10.0), &[(0, 0.3), (1, 0.2)]);
+    let free = driven_mass(0.02, &Contact::jenkins(0, None, 1.0, 0.0, 1.0), &[(0, 0.3), (1, 0.2)]);
+    let held = driven_mass(0.02, &Contact::jenkins(0, None, 1.0, 1.0, 10.0), &[(0, 0.3), (1, 0.2)]);
     for (model, omega) in [
         (stuck.sector(), TAU * 209.0),
         (stuck.sector_without_contact(), TAU * 203.0),
@@ -215,7 +195,7 @@ fn points_that_stick_or_are_linear_have_no_error() {
 
 #[test]
 fn points_that_open_and_close_a_gap_come_nearer_in_both_of_their_states() {
-    let model = oscillator(0.02, &Contact::unilateral(None, Some(0), 3.0, 0.2), &[(1, 0.02)]);
+    let model = driven_mass(0.02, &Contact::unilateral(None, Some(0), 3.0, 0.2), &[(1, 0.02)]);
     // |X₁| of both states in an event-driven integration of another program.
     for (from, expected) in [(0.9, 0.401_335_298_905_242_4), (1.4, 0.061_858_390_314_775_365)] {
         let [coarse, fine] = [7, 63].map(|highest| {
@@ -237,7 +217,7 @@ fn points_that_open_and_close_a_gap_come_nearer_in_both_of_their_states() {
 
 #[test]
 fn a_slipping_point_under_a_constant_load_is_checked_with_its_mean() {
-    let model = oscillator(0.02, &Contact::jenkins(0, None, 1.0, 1.0, 0.3), &[(0, 0.1), (1, 0.2)]);
+    let model = driven_mass(0.02, &Contact::jenkins(0, None, 1.0, 1.0, 0.3), &[(0, 0.1), (1, 0.2)]);
     let errors = [1, 7, 63].map(|highest| {
         let v = checked(&model, &at(&model, highest, 1.25), 0);
         // |X₁| of another program's event-driven integration.
@@ -253,7 +233,7 @@ fn a_slipping_point_under_a_constant_load_is_checked_with_its_mean() {
 }
 
 fn duffing() -> Model {
-    oscillator(0.05, &Contact::cubic(0, None, 0.0, 0.1), &[(1, 0.18)])
+    driven_mass(0.05, &Contact::cubic(0, None, 0.0, 0.1), &[(1, 0.18)])
 }
 
 /// A response with three solutions at one frequency, and the numbers of their points, by amplitude.
@@ -317,23 +297,18 @@ fn sector_and_wheel() -> (Model, Model) {
     let damping = [0.1, 0.0, 0.0, 0.08];
     let mut across = Contact::jenkins(0, Some(1), 1.5, 0.5, 0.4);
     across.sector_offset = 1;
-    let mut sector = Model::cyclic(2, SECTORS).unwrap();
+    let sector = Structure::cyclic(2, SECTORS)
+        .matrices([&mass, &damping, &own])
+        .next(MatrixKind::Stiffness, &next)
+        .wave(1)
+        .contact(&across)
+        .force(1, 1, 0.5)
+        .build();
     let mut full_wheel = Wheel::new(2, SECTORS);
-    for (which, a, coupling) in [
-        (MatrixKind::Mass, mass, None),
-        (MatrixKind::Damping, damping, None),
-        (MatrixKind::Stiffness, own, Some(next)),
-    ] {
-        sector.set_matrix(which, &MatrixView::dense(2, &a)).unwrap();
-        if let Some(next) = coupling {
-            sector.set_coupling(which, &MatrixView::dense(2, &next)).unwrap();
-        }
-        full_wheel.set(which, &a, coupling.as_ref().map(<[f64; 4]>::as_slice), None);
-    }
-    sector.set_wave(1);
-    sector.add_contact(&across).unwrap();
+    full_wheel.set(MatrixKind::Mass, &mass, None, None);
+    full_wheel.set(MatrixKind::Damping, &damping, None, None);
+    full_wheel.set(MatrixKind::Stiffness, &own, Some(&next), None);
     full_wheel.add_contact(&across);
-    sector.add_force(1, 1, 0.5.into()).unwrap();
     full_wheel.add_force(1, 1, 0.5.into(), 1);
     (sector, full_wheel.model)
 }
@@ -341,10 +316,7 @@ fn sector_and_wheel() -> (Model, Model) {
 #[test]
 fn a_sector_in_its_wave_has_the_errors_of_the_whole_wheel() {
     let (sector, full_wheel) = sector_and_wheel();
-    let solver = SolverOptions {
-        response_dof: Some(1),
-        ..options(7)
-    };
+    let solver = at_dof(1, options(7));
     let [one, all] = [&sector, &full_wheel].map(|model| {
         let branch = sweep(model, &solver, 1.9, 1.9, &[]);
         checked(model, &branch, 0)
@@ -369,19 +341,12 @@ fn a_sector_in_its_wave_has_the_errors_of_the_whole_wheel() {
 
 #[test]
 fn a_contact_that_sticks_under_a_constant_load_beside_one_that_slips_keeps_its_place() {
-    let mut model = Model::new(2).unwrap();
-    for (which, a) in [
-        (MatrixKind::Mass, [1.0, 0.0, 0.0, 1.0]),
-        (MatrixKind::Damping, [0.1, 0.0, 0.0, 0.1]),
-        (MatrixKind::Stiffness, [3.0, -1.0, -1.0, 3.0]),
-    ] {
-        model.set_matrix(which, &MatrixView::dense(2, &a)).unwrap();
-    }
-    model.add_contact(&Contact::jenkins(0, None, 1.0, 1.0, 0.1)).unwrap();
-    model.add_contact(&Contact::jenkins(1, None, 1.0, 1.0, 2.0)).unwrap();
-    for (dof, harmonic, force) in [(0, 1, 0.6), (0, 0, 0.2), (1, 0, 0.5)] {
-        model.add_force(dof, harmonic, force.into()).unwrap();
-    }
+    let model = dense(&[1.0, 0.0, 0.0, 1.0], &[3.0, -1.0, -1.0, 3.0])
+        .damping(&[0.1, 0.0, 0.0, 0.1])
+        .slider(0, 1.0, 1.0, 0.1)
+        .slider(1, 1.0, 1.0, 2.0)
+        .forces([(0, 1, 0.6), (0, 0, 0.2), (1, 0, 0.5)])
+        .build();
     let [coarse, fine] = [3, 63].map(|h| {
         let branch = at(&model, h, 1.3);
         let shares = branch.slip_fraction_at(0).unwrap();

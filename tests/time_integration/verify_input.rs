@@ -1,21 +1,15 @@
 //! Checks of points in time that are refused, or that the caller stops.
 
-use crate::common::{BASE, Blisk, sweep};
-use hbvib::{
-    Branch, Contact, Error, Hooks, MatrixKind, MatrixView, ModeOptions, Model, SolverOptions, Status, SteadyMethod,
-    VerifyOptions, nonlinear_mode, verify,
-};
+use crate::common::models::dense;
+use crate::common::{BASE, Blisk, amplitude_range, harmonics, sweep};
+use hbvib::{Branch, Error, Hooks, Model, SolverOptions, Status, SteadyMethod, VerifyOptions, nonlinear_mode, verify};
 use std::f64::consts::TAU;
 
 /// Where the blisk slips.
 const OMEGA: f64 = TAU * 208.85;
 
 fn options() -> SolverOptions {
-    SolverOptions {
-        harmonics: 3,
-        tolerance: 0.0,
-        ..SolverOptions::default()
-    }
+    harmonics(3)
 }
 
 fn at(model: &Model, omega: f64) -> Branch {
@@ -46,11 +40,7 @@ fn what_cannot_be_checked_is_refused_with_the_reason() {
     ] {
         says(refusal(&other, &branch, 0, defaults), Status::Argument, "another one");
     }
-    let mode = ModeOptions {
-        log10_start: -8.0,
-        log10_stop: -7.0,
-        ..ModeOptions::default()
-    };
+    let mode = amplitude_range(-8.0, -7.0);
     let mode = nonlinear_mode(&model, &options(), &mode, &mut Hooks::default()).unwrap();
     says(
         refusal(&model, &mode, 0, defaults),
@@ -107,16 +97,11 @@ fn what_cannot_be_checked_is_refused_with_the_reason() {
 
 #[test]
 fn what_the_integration_does_not_know_is_refused_by_it() {
-    let mut model = Model::new(2).unwrap();
-    for (which, a) in [
-        (MatrixKind::Mass, [1.0, 0.0, 0.0, 0.0]),
-        (MatrixKind::Damping, [0.1, 0.0, 0.0, 0.1]),
-        (MatrixKind::Stiffness, [2.0, -1.0, -1.0, 2.0]),
-    ] {
-        model.set_matrix(which, &MatrixView::dense(2, &a)).unwrap();
-    }
-    model.add_contact(&Contact::jenkins(1, None, 1.0, 1.0, 0.1)).unwrap();
-    model.add_force(0, 1, 0.3.into()).unwrap();
+    let model = dense(&[1.0, 0.0, 0.0, 0.0], &[2.0, -1.0, -1.0, 2.0])
+        .damping(&[0.1, 0.0, 0.0, 0.1])
+        .slider(1, 1.0, 1.0, 0.1)
+        .force(0, 1, 0.3)
+        .build();
     let branch = at(&model, 1.0);
     let e = refusal(&model, &branch, 0, VerifyOptions::default());
     assert!(e.status == Status::Unsupported && e.message().contains("freedom 1 has no mass"));

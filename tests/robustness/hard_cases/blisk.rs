@@ -2,8 +2,9 @@
 
 use super::Case;
 use super::one_mass::{answer, at, by_default, in_time};
+use crate::common::models::Structure;
 use crate::common::{B1, B2, Blisk, D, NDOF, R, SECTORS, harmonics};
-use hbvib::{Contact, MatrixKind, MatrixView, Model, SolverOptions};
+use hbvib::{Contact, MatrixKind, Model, SolverOptions};
 use std::f64::consts::TAU;
 
 /// Changes of a case: ring mass, engine order, units of mass and length in SI units.
@@ -24,14 +25,12 @@ pub fn unforced(case: &Case, change: Change) -> Model {
         ..crate::common::BASE
     };
     let a = blisk.matrices();
-    let mut model = Model::cyclic(a.n, SECTORS).unwrap();
-    for (kind, matrix) in [(MatrixKind::Mass, &a.mass), (MatrixKind::Stiffness, &a.own)] {
-        model.set_matrix(kind, &MatrixView::dense(a.n, matrix)).unwrap();
-    }
-    model
-        .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(a.n, &a.next))
-        .unwrap();
-    model.set_wave(change.engine_order);
+    let mut model = Structure::cyclic(a.n, SECTORS)
+        .mass(&a.mass)
+        .stiffness(&a.own)
+        .next(MatrixKind::Stiffness, &a.next)
+        .wave(change.engine_order)
+        .build();
     let kt = case.number("kt") * change.units.1;
     model
         .add_contact(&Contact::jenkins(D, Some(R), kt, 1.0, case.number("fc")))

@@ -2,7 +2,7 @@
 
 use super::Case;
 use super::blisk::{plain, unforced};
-use crate::common::harmonics;
+use crate::common::{amplitude_range, harmonics};
 use hbvib::{Hooks, ModeOptions, ModePoint, SolverOptions, Status, nonlinear_mode};
 use std::f64::consts::TAU;
 
@@ -10,10 +10,8 @@ use std::f64::consts::TAU;
 fn at_amplitude(case: &Case, solver: &SolverOptions) -> (f64, ModePoint) {
     let wanted = [case.number("log10_a")];
     let range = ModeOptions {
-        log10_start: wanted[0] - 1.5,
-        log10_stop: wanted[0] + 0.5,
         at: &wanted,
-        ..ModeOptions::default()
+        ..amplitude_range(wanted[0] - 1.5, wanted[0] + 0.5)
     };
     let model = unforced(case, plain(case));
     let branch = nonlinear_mode(&model, solver, &range, &mut Hooks::default()).unwrap();

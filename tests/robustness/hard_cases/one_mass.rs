@@ -1,10 +1,9 @@
 //! One mass on a spring that rubs on the ground: limits of the friction, loads and scales.
 
 use super::Case;
-use hbvib::{
-    Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Result, SolverOptions, Status, TimeOptions,
-    forced_response, time_response,
-};
+use crate::common::models::oscillator;
+use crate::common::omega_range;
+use hbvib::{Contact, Hooks, Model, Result, SolverOptions, Status, TimeOptions, forced_response, time_response};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -13,17 +12,9 @@ pub const EVERY_H: [usize; 4] = [1, 2, 7, 31];
 
 /// Mass, damping and stiffness of a case, without contact and force.
 pub fn structure(case: &Case) -> Model {
-    let mut model = Model::new(1).unwrap();
-    for (kind, name) in [
-        (MatrixKind::Mass, "m"),
-        (MatrixKind::Damping, "c"),
-        (MatrixKind::Stiffness, "k"),
-    ] {
-        model
-            .set_matrix(kind, &MatrixView::dense(1, &[case.number(name)]))
-            .unwrap();
-    }
-    model
+    oscillator(case.number("m"), case.number("k"))
+        .damping(&[case.number("c")])
+        .build()
 }
 
 /// The same with a Jenkins contact to the ground and forces (harmonic, value).
@@ -40,11 +31,7 @@ pub fn rubbing(case: &Case, limit: f64, forces: &[(usize, f64)]) -> Model {
 
 /// Harmonics 0 ..= H of all degrees of freedom from a cold start at one frequency.
 pub fn answer(model: &Model, omega: f64, solver: &SolverOptions) -> Result<Vec<Complex64>> {
-    let range = ForcedOptions {
-        omega_start: omega,
-        omega_stop: omega,
-        ..ForcedOptions::default()
-    };
+    let range = omega_range(omega, omega);
     let branch = forced_response(model, solver, &range, &mut Hooks::default())?;
     assert_eq!(branch.status(), Status::Ok);
     assert!(branch.residual()[0] <= solver.tol_residual);

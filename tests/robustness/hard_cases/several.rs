@@ -3,23 +3,16 @@
 
 use super::Case;
 use super::one_mass::{at, by_default, in_time, rubbing, structure};
+use crate::common::models::{dense, oscillator};
 use crate::common::{all_harmonics, harmonics, solve_at};
-use hbvib::{Contact, MatrixKind, MatrixView, Model, Status};
+use hbvib::{Contact, Model, Status};
 
 /// Two degrees of freedom from M, C and K, column-major.
 fn two(mass: [f64; 4], damping: [f64; 4], stiffness: [f64; 4], forces: [f64; 2]) -> Model {
-    let mut model = Model::new(2).unwrap();
-    for (kind, a) in [
-        (MatrixKind::Mass, mass),
-        (MatrixKind::Damping, damping),
-        (MatrixKind::Stiffness, stiffness),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(2, &a)).unwrap();
-    }
-    for (dof, force) in forces.into_iter().enumerate() {
-        model.add_force(dof, 1, force.into()).unwrap();
-    }
-    model
+    dense(&mass, &stiffness)
+        .damping(&damping)
+        .forces(forces.into_iter().enumerate().map(|(dof, force)| (dof, 1, force)))
+        .build()
 }
 
 fn diagonal(a: f64, b: f64) -> [f64; 4] {
@@ -57,15 +50,7 @@ pub fn ill_conditioned_mass(case: &Case) {
     }
     case.tells_of_the_reference(&["ok"]);
     // The light mass follows the heavy one, whose own problem is that of one mass.
-    let mut one = Model::new(1).unwrap();
-    for (kind, value) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Damping, 0.02),
-        (MatrixKind::Stiffness, 1.0),
-    ] {
-        one.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
-    }
-    one.add_force(0, 1, forces[0].into()).unwrap();
+    let mut one = oscillator(1.0, 1.0).damping(&[0.02]).force(0, 1, forces[0]).build();
     rubbing_at(&mut one, 0, None);
     let truth = in_time(&one, w)[1].norm();
     case.near("|X_1| of both", by_default(&of(1e-14), w)[2].norm(), truth);

@@ -2,7 +2,8 @@
 
 use super::Case;
 use super::one_mass::{at, by_default, rubbing};
-use hbvib::{ForcedOptions, Hooks, forced_response};
+use crate::common::omega_range;
+use hbvib::{Hooks, forced_response};
 
 pub fn nearly_rigid(case: &Case) {
     let model = rubbing(case, case.number("fc"), &[(1, case.number("F"))]);
@@ -57,11 +58,7 @@ pub fn grazing(case: &Case) {
             case.number("kt") * stuck * (1.0 - excess),
             &[(1, case.number("F"))],
         );
-        let range = ForcedOptions {
-            omega_start: w,
-            omega_stop: w,
-            ..ForcedOptions::default()
-        };
+        let range = omega_range(w, w);
         let branch = forced_response(&model, &crate::common::harmonics(h), &range, &mut Hooks::default()).unwrap();
         let deviation = (branch.amplitude()[0] / stuck - 1.0).abs();
         case.holds(

@@ -1,6 +1,6 @@
 //! Options without sense: every call ends within a number of evaluations that its bounds give.
 
-use crate::common::harmonics;
+use crate::common::{harmonics, omega_range};
 use hbvib::{
     Call, Contact, ContactKind, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Result, SolverOptions, User,
     UserForce, forced_response,
@@ -147,13 +147,8 @@ fn absurd_options_end_within_their_bounds() {
     for (name, solver, (from, to), driven) in absurdities() {
         let spring = Arc::new(Counted::default());
         let range = ForcedOptions {
-            omega_start: from,
-            omega_stop: to,
             at: &[0.5 * (from + to)],
-            guess: None,
-            responses: &[],
-            together: false,
-            ..ForcedOptions::default()
+            ..omega_range(from, to)
         };
         let found = model(&spring, &driven).and_then(|m| forced_response(&m, &solver, &range, &mut Hooks::default()));
         let asked = spring.0.load(Ordering::Relaxed);

@@ -2,7 +2,8 @@
 
 use super::law::{LAWS, Law, Sizes};
 use super::random::Random;
-use hbvib::{MatrixKind, MatrixView, Model};
+use crate::common::models::dense;
+use hbvib::Model;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -220,14 +221,7 @@ impl Case {
 
     /// The model of the library.
     pub fn model(&self) -> Model {
-        let mut model = Model::new(self.n).unwrap();
-        for (which, a) in [
-            (MatrixKind::Mass, &self.mass),
-            (MatrixKind::Damping, &self.damping),
-            (MatrixKind::Stiffness, &self.stiffness),
-        ] {
-            model.set_matrix(which, &MatrixView::dense(self.n, a)).unwrap();
-        }
+        let mut model = dense(&self.mass, &self.stiffness).damping(&self.damping).build();
         for assembled in &self.contacts {
             model.add_contact(&assembled.law.contact(&assembled.sides)).unwrap();
         }
