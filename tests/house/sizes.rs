@@ -15,9 +15,8 @@ const FILES: usize = 3;
 const RECORDS: [&str; 5] = ["SolverOptions", "Fit", "Verification", "Reduction", "Searched"];
 
 /// Types with more fields, and their number.
-const WIDE: [(&str, usize); 16] = [
+const WIDE: [(&str, usize); 15] = [
     ("Condensed", 22),
-    ("Contact", 15),
     ("ContactForces", 26),
     ("Epmc", 19),
     ("ExtendedSystem", 14),
