@@ -53,9 +53,15 @@ pub(super) fn pack(set: &HarmonicSet, transform: &[Complex64], g: &mut [f64]) {
         g[0] = transform[0].re;
     }
     // The reduced numbers begin at 1.
-    let numbers = transform[1..].iter().step_by(set.stride());
-    for (pair, t) in g[mean..].as_chunks_mut::<2>().0.iter_mut().zip(numbers) {
-        *pair = [2.0 * t.re, 2.0 * t.im];
+    let pairs = g[mean..].as_chunks_mut::<2>().0.iter_mut();
+    if set.stride() == 2 {
+        for (pair, [_, t]) in pairs.zip(transform.as_chunks::<2>().0) {
+            *pair = [2.0 * t.re, 2.0 * t.im];
+        }
+    } else {
+        for (pair, t) in pairs.zip(transform[1..].iter().step_by(set.stride())) {
+            *pair = [2.0 * t.re, 2.0 * t.im];
+        }
     }
 }
 
@@ -67,7 +73,17 @@ pub(super) fn apply(jacobian: &[f64], motion: &[f64], offset: &[f64], force: &mu
 
 /// Adds s·tₙ, the share of a piece of tangent stiffness s, to the spectrum of the stiffness for every `stride`-th n.
 pub(super) fn add_stiffness(spectrum: &mut [Complex64], stiffness: f64, transform: &[Complex64], stride: usize) {
-    if stiffness != 0.0 {
+    if stiffness != 0.0 && stride == 2 {
+        // Their number is odd.
+        let (pairs, last) = spectrum.as_chunks_mut::<2>();
+        let (terms, of_last) = transform.as_chunks::<2>();
+        for ([s, _], [t, _]) in pairs.iter_mut().zip(terms) {
+            *s += stiffness * t;
+        }
+        for (s, t) in last.iter_mut().zip(of_last) {
+            *s += stiffness * t;
+        }
+    } else if stiffness != 0.0 {
         for (s, t) in spectrum.iter_mut().zip(transform).step_by(stride) {
             *s += stiffness * t;
         }

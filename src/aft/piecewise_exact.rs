@@ -97,7 +97,14 @@ impl Exact {
         let turn = TAU / set.stride() as f64;
         for piece in &self.pieces {
             interrupt.check()?;
-            transform([piece.start, piece.end], turn.recip(), turn, &mut self.transform);
+            // A piece without stiffness has no part in its spectrum, whose numbers go twice as far as those of the motion.
+            let numbers = if piece.slope == 0.0 {
+                set.highest_reduced() + 1
+            } else {
+                self.transform.len()
+            };
+            let found = &mut self.transform[..numbers];
+            transform([piece.start, piece.end], turn.recip(), turn, found);
             let state = law.state(piece);
             self.assembly.add(
                 (set, motion),

@@ -353,6 +353,15 @@ impl<'a> ContactForces<'a> {
         &self.slip_fractions
     }
 
+    /// Least and largest share of the period in which a law slips or is open.
+    #[must_use]
+    pub fn free_shares(&self) -> (f64, f64) {
+        let shares = self.slip_fractions.iter().zip(&self.open_fractions);
+        shares.fold((1.0, 0.0), |(least, largest): (f64, f64), (slip, open)| {
+            (least.min(slip + open), largest.max(slip + open))
+        })
+    }
+
     /// Share of the period that each law is open which presses at the static motion.
     pub fn lifted_shares(&self) -> impl Iterator<Item = f64> {
         let laws = self.open_fractions.iter().zip(&self.presses);

@@ -45,7 +45,11 @@ const UNBALANCED: f64 = 1e-2;
 /// Kind: tuned; measured on: not recorded.
 const LEAST_LINEAR_MOTION: f64 = 1e-6;
 
-/// The forced response of a condensed model as equations over the frequency.
+/// Largest share of the period in which a contact sticks, or does not, whose terms in Newton's matrix have a low rank.
+/// Kind: tuned; measured on: one slider with 64 harmonics, whose terms are then up to a fourth of the unknowns.
+const SHORT_PIECES: f64 = 0.16;
+
+/// The forced response of a condensed model.
 pub struct HarmonicBalance<'a> {
     pub(super) condensed: &'a Condensed,
     /// Contact forces, in a box as other parts of problems are: calls that pass them by value then need little of a
@@ -462,6 +466,25 @@ impl Jacobian for HarmonicBalance<'_> {
             }
         }
         Ok(())
+    }
+
+    fn near_diagonal(&mut self, diagonal: &mut [Complex64]) -> bool {
+        if self.condensed.coordinates() != 1 || self.condensed.set().has_mean() {
+            return false;
+        }
+        // Where the contact has no stiffness J = 1 − Gκ, and where it sticks all the time J = 1.
+        let free = self.forces.free_shares();
+        let is_free = free.0 >= 1.0 - SHORT_PIECES;
+        if !is_free && (free.1 > SHORT_PIECES || !self.condensed.may_be_eliminated(0)) {
+            return false;
+        }
+        for (i, (to, table)) in diagonal.iter_mut().zip(self.tables.current()).enumerate() {
+            *to = Complex64::ONE;
+            if is_free {
+                *to -= table.value[0] * self.condensed.kappa(0, i);
+            }
+        }
+        true
     }
 
     fn multiply_here(&mut self, d: &[f64], out: &mut [f64]) -> Result<bool> {

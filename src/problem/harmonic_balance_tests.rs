@@ -74,3 +74,82 @@ fn derivatives_by_the_frequency_are_differences_for_few_contacts_and_for_many() 
         );
     }
 }
+
+#[test]
+fn factors_by_terms_solve_newtons_matrix_of_a_slider_with_many_harmonics() {
+    use crate::condense::test_chains::structure;
+    use crate::linalg::newton::linear_system::dense::DenseSystem;
+    use crate::linalg::newton::linear_system::{Border, LinearSystem};
+
+    let interrupt = Interrupt::none();
+    let mut model = structure(1, (0.0, 1e-3));
+    model.add_contact(&Contact::jenkins(1, Some(4), 9.0, 0.3, 1.0)).unwrap();
+    let options = SolverOptions {
+        harmonics: 95,
+        ..SolverOptions::default()
+    };
+    let condensed = Condensed::new(&model, &options, (0.3, 2.0), &interrupt).unwrap();
+    let mut problem = HarmonicBalance::new(&condensed, 8, (0.3, 2.0), 0, None, &interrupt).unwrap();
+    let n = problem.unknowns();
+    assert_eq!(n, 96);
+    let mut system = DenseSystem::new(n).unwrap();
+    let mut at = Residual::new(n).unwrap();
+    let row: Vec<f64> = (0..=n).map(|i| (0.3 + i as f64).sin()).collect();
+    // From motions that just slip to such that hardly stick, smooth and with a ring in a high harmonic.
+    let (mut near, mut far) = (0, 0);
+    for k in 0..48 {
+        let size = 0.035 * 1.15_f64.powi(k);
+        let ring = if k % 2 == 0 { 0.0 } else { 0.02 * size };
+        let u: Vec<f64> = (0..n)
+            .map(|i| {
+                let h = (i / 2 * 2 + 1) as f64;
+                size * (1.0 + i as f64).cos() / h.powi(3) + if i == 22 { ring } else { 0.0 }
+            })
+            .collect();
+        problem.evaluate(&u, 0.4 + 0.02 * f64::from(k), &mut at).unwrap();
+        if problem.forces.all_stuck() {
+            continue;
+        }
+        let scales = (0.3, 2.0);
+        let border = Border {
+            column: &at.d_parameter,
+            scales,
+            row: &row,
+        };
+        system.update(&mut problem, border, &interrupt).unwrap();
+        system.factor(&mut problem, &interrupt).unwrap();
+        let b: Vec<f64> = (0..=n).map(|i| (0.7 * i as f64).cos()).collect();
+        let mut x = b.clone();
+        assert!(system.solve(&mut problem, 1e-12, &mut x, &interrupt).unwrap());
+        // The bordered matrix by LU.
+        let (mut matrix, mut active) = (vec![0.0; n * n], vec![true; n]);
+        problem.fill(&mut matrix, &mut active).unwrap();
+        let mut lu = Lu::new(n + 1, 1).unwrap();
+        for j in 0..=n {
+            let to = &mut lu.matrix()[j * (n + 1)..(j + 1) * (n + 1)];
+            let (from, unit) = if j < n {
+                (&matrix[j * n..(j + 1) * n], scales.0)
+            } else {
+                (&at.d_parameter[..], scales.1)
+            };
+            for (to, from) in to.iter_mut().zip(from) {
+                *to = unit * from;
+            }
+            to[n] = row[j];
+        }
+        lu.factor(&interrupt).unwrap();
+        let mut expected = b;
+        lu.solve(&mut expected);
+        let largest = expected.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        for (x, expected) in x.iter().zip(&expected) {
+            assert!((x - expected).abs() < 1e-10 * largest, "{k}: {x} {expected}");
+        }
+        assert_eq!(system.is_positive(), lu.is_positive(), "{k}");
+        if problem.near_diagonal(&mut vec![Complex64::ZERO; n / 2]) {
+            near += 1;
+        } else {
+            far += 1;
+        }
+    }
+    assert!(near > 8 && far > 4, "{near} near, {far} far");
+}

@@ -33,7 +33,12 @@ fn at_turn(set: &HarmonicSet, packed: &[f64], mut turn: Complex64) -> Jet {
     // Value and p times the quadrature, which the processor makes side by side, and their products with p².
     let (mut low, mut high) = ([0.0; 2], [0.0; 2]);
     let mut p = 1.0;
-    for [a, b] in rest.as_chunks::<2>().0 {
+    let mut pairs = rest.as_chunks::<2>().0;
+    if pairs.len() >= GROUPED_FROM {
+        let sums = in_groups(pairs, (turn, step), stride as f64);
+        (low, high, pairs, turn, p) = (sums.low, sums.high, sums.rest, sums.turn, sums.number);
+    }
+    for [a, b] in pairs {
         let (along, across) = ([turn.re, turn.im], [-turn.im, turn.re]);
         let factors = [1.0, p];
         let square = p * p;
@@ -53,7 +58,62 @@ fn at_turn(set: &HarmonicSet, packed: &[f64], mut turn: Complex64) -> Jet {
     }
 }
 
-/// Values of a signal at times that approach one another, where most e^{iτ} follow from the one before.
+/// Harmonics of which each has a power of e^{iτ} of its own, so that none waits for the one before.
+/// Kind: block.
+const SERIES_GROUP: usize = 8;
+
+/// Harmonics from which that takes less time.
+/// Kind: tuned; measured on: one slider with 5 to 64 odd harmonics.
+const GROUPED_FROM: usize = 16;
+
+/// Sums over whole groups of harmonics, and where the pairs that are left begin.
+struct Sums<'a> {
+    /// Values and p times the quadratures, and both times p².
+    low: [f64; 2],
+    high: [f64; 2],
+    /// The pairs that are left, e^{ipτ} and p of their first.
+    rest: &'a [[f64; 2]],
+    turn: Complex64,
+    number: f64,
+}
+
+/// The sums over whole groups from the first harmonic on.
+#[inline(never)]
+fn in_groups(pairs: &[[f64; 2]], (mut turn, step): (Complex64, Complex64), stride: f64) -> Sums<'_> {
+    let (groups, rest) = pairs.as_chunks::<SERIES_GROUP>();
+    // Powers of the first group, and the factor to the next.
+    let (mut re, mut im, mut p) = ([0.0; SERIES_GROUP], [0.0; SERIES_GROUP], [0.0; SERIES_GROUP]);
+    for k in 0..SERIES_GROUP {
+        (re[k], im[k], p[k]) = (turn.re, turn.im, 1.0 + stride * k as f64);
+        turn *= step;
+    }
+    let next = step.powu(SERIES_GROUP as u32);
+    let [mut x, mut dx, mut ddx, mut dddx] = [[0.0; SERIES_GROUP]; 4];
+    for group in groups {
+        for k in 0..SERIES_GROUP {
+            let [a, b] = group[k];
+            let value = a * re[k] - b * im[k];
+            let slope = (a * im[k] + b * re[k]) * p[k];
+            let square = p[k] * p[k];
+            x[k] += value;
+            dx[k] += slope;
+            ddx[k] += square * value;
+            dddx[k] += square * slope;
+            (re[k], im[k]) = (re[k] * next.re - im[k] * next.im, re[k] * next.im + im[k] * next.re);
+            p[k] += stride * SERIES_GROUP as f64;
+        }
+    }
+    let sum = |of: [f64; SERIES_GROUP]| of.iter().sum::<f64>();
+    Sums {
+        low: [sum(x), sum(dx)],
+        high: [sum(ddx), sum(dddx)],
+        rest,
+        turn: Complex64::new(re[0], im[0]),
+        number: p[0],
+    }
+}
+
+/// The jets of a signal at times that approach one another: most e^{iτ} follow from the one before.
 struct Approach<'a> {
     set: &'a HarmonicSet,
     packed: &'a [f64],
@@ -149,6 +209,52 @@ pub(super) fn turning_point(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sums_in_groups_are_sums_one_by_one() {
+        for (highest, odd) in [
+            (15, false),
+            (16, false),
+            (31, true),
+            (47, false),
+            (127, true),
+            (130, false),
+        ] {
+            let set = HarmonicSet::excited(&[1], highest, true, odd, false).unwrap();
+            let packed: Vec<f64> = (0..set.packed_len())
+                .map(|i| (1.7 * i as f64).sin() / (1.0 + i as f64))
+                .collect();
+            for k in 0..20 {
+                let tau = 0.31 * f64::from(k);
+                let (mut x, mut d) = (0.0, [0.0; 3]);
+                let mean = usize::from(set.has_mean());
+                if mean == 1 {
+                    x += packed[0];
+                }
+                for (i, pair) in packed[mean..].as_chunks::<2>().0.iter().enumerate() {
+                    let p = set.reduced(i) as f64;
+                    let z = Complex64::new(pair[0], pair[1]) * Complex64::cis(p * tau);
+                    x += z.re;
+                    d[0] -= p * z.im;
+                    d[1] -= p * p * z.re;
+                    d[2] += p * p * p * z.im;
+                }
+                let at = jet(&set, &packed, tau);
+                let scale = highest as f64;
+                for (found, expected, scale) in [
+                    (at.x, x, 1.0),
+                    (at.dx, d[0], scale),
+                    (at.ddx, d[1], scale * scale),
+                    (at.dddx, d[2], scale * scale * scale),
+                ] {
+                    assert!(
+                        (found - expected).abs() < 1e-13 * scale,
+                        "{highest}, {k}: {found} {expected}"
+                    );
+                }
+            }
+        }
+    }
 
     #[test]
     fn a_crossing_is_found_to_rounding_wherever_its_bracket_ends() {

@@ -362,10 +362,10 @@ impl Bounds {
         }
     }
 
-    /// Width of a cell in which x varies by rounding only between roots of x′ that are not separated.
+    /// Whether x varies in a cell of this width by rounding only between roots of x′ that are not separated.
     #[inline]
-    fn finest(&self) -> f64 {
-        (1e-14 * (self.size / self.bend)).cbrt()
+    fn is_finest(&self, width: f64) -> bool {
+        width * width * width < 1e-14 * (self.size / self.bend)
     }
 
     /// Largest departure of x′ from its chord within a cell.
@@ -398,7 +398,7 @@ fn isolate(
     let cell = CubicCell::new([a.value, b.value], [a.turning, b.turning], width);
     let is_certain =
         cell.is_monotone(bounds.fifth, bounds.noise) || (!crosses && cell.keeps_sign(bounds.fifth, bounds.noise));
-    if is_certain || width < bounds.finest() {
+    if is_certain || bounds.is_finest(width) {
         if crosses {
             let guess = a.tau + width * cell.root();
             push_root((set, packed), [a, b], guess, found);

@@ -5,27 +5,18 @@
 //! eliminated first: x_t = b_t − J_ta x_a − r_t x_p. The remaining system couples the other unknowns and the
 //! parameter.
 
+mod bordered_parts;
 mod factor_reuse;
+mod near_diagonal;
+
+pub use bordered_parts::Parts;
 
 use crate::error::{Result, boxed, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::factors::lu::Lu;
 use crate::linalg::factors::small_lu::{self, SmallLu};
-
-/// The parts of the bordered matrix [J·u, r·p; row].
-#[derive(Clone, Copy)]
-pub struct Parts<'a> {
-    /// Jacobian J, column-major.
-    pub jacobian: &'a [f64],
-    /// Column r of the border.
-    pub column: &'a [f64],
-    /// For each unknown, whether its column of J differs from that of the identity.
-    pub active: &'a [bool],
-    /// Scales of the unknowns and of the parameter: u and p.
-    pub scales: (f64, f64),
-    /// Last row of the matrix.
-    pub row: &'a [f64],
-}
+use near_diagonal::NearDiagonal;
+use num_complex::Complex64;
 
 /// Factors of the matrix of the active unknowns and the parameter.
 enum Factors {
@@ -96,6 +87,9 @@ impl Factors {
 /// LU factors of the (n + 1) × (n + 1) matrix [J r; tᵀ].
 pub struct Bordered {
     lu: Factors,
+    /// Factors by terms of low rank, and whether they are those of the matrix factored last.
+    near: Option<Box<NearDiagonal>>,
+    is_near: bool,
     n: usize,
     /// Unknowns that are solved for. The others have identity columns.
     active: Vec<usize>,
@@ -123,6 +117,8 @@ impl Bordered {
         let rest = (n / 2 + 1).saturating_mul(n / 2 + 2);
         let mut bordered = Self {
             lu: Factors::new(n + 1)?,
+            near: None,
+            is_near: false,
             n,
             active: try_vec(n, 0, CONTEXT)?,
             eliminated: try_vec(n, 0, CONTEXT)?,
@@ -153,6 +149,7 @@ impl Bordered {
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         let n = self.n;
+        self.is_near = false;
         self.active.clear();
         self.eliminated.clear();
         for (k, &active) in is_active.iter().enumerate() {
@@ -195,11 +192,50 @@ impl Bordered {
         self.lu.factor(interrupt)
     }
 
+    /// Factors the matrix, all of whose unknowns are active, by its difference from a complex diagonal, pair by pair, where that has a
+    /// low rank. [`Self::solve`] then leaves an error, for [`Self::refine`] to remove. `false`, without factors, where it has not.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub fn factor_near(&mut self, k: &Parts<'_>, diagonal: &[Complex64], interrupt: &Interrupt<'_>) -> Result<bool> {
+        self.is_near = false;
+        let mut near = match self.near.take() {
+            Some(near) => near,
+            None => boxed(|| NearDiagonal::new(self.n))?,
+        };
+        let factored = near.factor(k, diagonal, interrupt);
+        self.near = Some(near);
+        self.is_near = factored?;
+        if self.is_near {
+            self.active.clear();
+            self.active.extend(0..self.n);
+            self.eliminated.clear();
+            self.border.clear();
+            self.rest.clear();
+            self.u_scale = k.scales.0;
+        }
+        Ok(self.is_near)
+    }
+
+    /// Whether the factors are those of [`Self::factor_near`].
+    #[must_use]
+    pub fn is_near(&self) -> bool {
+        self.is_near
+    }
+
+    /// The factors by terms, where they are those of the matrix factored last.
+    fn terms(&mut self) -> Option<&mut NearDiagonal> {
+        self.near.as_deref_mut().filter(|_| self.is_near)
+    }
+
     /// Whether the determinant of the factored matrix is positive.
     ///
     /// With t the solution for (0, …, 0, 1), the determinant of [J r; tᵀ] has the same sign.
     #[must_use]
     pub fn is_positive(&self) -> bool {
+        if let (true, Some(near)) = (self.is_near, &self.near) {
+            return near.is_positive();
+        }
         match &self.lu {
             Factors::Small(lu) => lu.is_positive(),
             Factors::Large(lu) => lu.is_positive(),
@@ -208,6 +244,9 @@ impl Bordered {
 
     /// Solves in place for a right-hand side of n + 1 numbers.
     pub fn solve(&mut self, b: &mut [f64]) {
+        if let Some(near) = self.terms() {
+            return near.solve(b);
+        }
         let n = self.n;
         let m = self.active.len() + 1;
         let x = &mut self.reduced[..m];

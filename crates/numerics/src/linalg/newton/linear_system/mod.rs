@@ -34,8 +34,14 @@ pub trait Jacobian {
     /// `StoppedByCaller`.
     fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) -> Result<()>;
 
-    /// out ← J d at the point evaluated last, for less work than [`Self::fill`]; `false` where the problem has no
-    /// such product.
+    /// Fills in a complex diagonal, a number for each pair of unknowns, from which J at the point evaluated last is likely to differ by
+    /// terms of low rank alone; `false` where there is none.
+    fn near_diagonal(&mut self, _diagonal: &mut [Complex64]) -> bool {
+        false
+    }
+
+    /// out = J d at the point evaluated last, for less work than [`Self::fill`]; `false` where the problem has no such
+    /// product.
     ///
     /// # Errors
     /// `StoppedByCaller`.
