@@ -1,6 +1,7 @@
 //! Cubic Hermite interpolation of a branch between two points with their tangents.
 
 use crate::continuation::{Metric, Point};
+use num_complex::Complex64;
 
 /// Length of a circular arc over a chord, from the cosine of the angle between the directions at its ends. A
 /// resonance is nearly a circle, and its chord would cost most of the accuracy.
@@ -64,6 +65,13 @@ impl<'p> Cubic<'p> {
             // The sum is centred on b, so that round-off stays relative to the distance.
             *v = b + w[0] * (a - b) + w[2] * ta + w[3] * tb;
         }
+    }
+
+    /// The amplitude at s, by its values and derivatives at both points.
+    pub fn amplitude(&self, s: f64) -> Complex64 {
+        let (w, _) = self.weights(s);
+        let (a, b) = (self.a, self.b);
+        b.amplitude + (a.amplitude - b.amplitude) * w[0] + a.slope * w[2] + b.slope * w[3]
     }
 
     /// Writes the point at s to `v`, and its derivative by s.

@@ -6,6 +6,7 @@
 //! doi:10.1137/1.9780898719154), and is accepted if the prediction was close and the direction kept.
 
 mod corners;
+mod crossed_resonances;
 
 use crate::continuation::corrector::{Corrector, Outcome};
 use crate::continuation::history::History;
@@ -18,6 +19,8 @@ use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::problem::Problem;
 use num_complex::Complex64;
+
+pub use crossed_resonances::LinearResonance;
 
 /// Outcome of an attempt to advance.
 #[derive(Debug)]
@@ -265,6 +268,19 @@ impl Continuation {
     /// Those of the problem; `Callback` if a callback of the caller failed down to the smallest step;
     /// `StoppedByCaller`.
     pub fn advance(&mut self, problem: &mut dyn Problem, interrupt: &Interrupt<'_>) -> Result<Advance> {
+        self.advance_over(problem, &[], interrupt)
+    }
+
+    /// Finds the next point, by a step that passes none of the resonances `known`, in ascending order, which the branch feels.
+    ///
+    /// # Errors
+    /// As [`Self::advance`].
+    pub fn advance_over(
+        &mut self,
+        problem: &mut dyn Problem,
+        known: &[LinearResonance],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Advance> {
         if self.stationary >= MOST_STATIONARY {
             return Ok(Advance::Stopped(Status::StoppedStepTooSmall));
         }
@@ -292,6 +308,10 @@ impl Continuation {
                         if !self.steps.failed() {
                             return Ok(Advance::Stopped(Status::StoppedStepTooSmall));
                         }
+                        continue;
+                    }
+                    if let Some(share) = self.crossed(problem, (&point, length), known, interrupt)? {
+                        self.steps.at_most(ARC_LENGTH_APPROACH * share * length);
                         continue;
                     }
                     self.steps

@@ -17,7 +17,7 @@ mod settings;
 pub mod special_points;
 pub mod step_control;
 
-pub use arc_length::{Advance, Continuation};
+pub use arc_length::{Advance, Continuation, LinearResonance};
 pub use metric::Metric;
 pub use point::{Point, PointAt};
 pub use settings::Settings;

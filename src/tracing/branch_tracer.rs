@@ -2,7 +2,7 @@
 //! parameter values. The tracer is the same for every analysis.
 
 use crate::continuation::special_points::SpecialPoint;
-use crate::continuation::{Advance, Continuation, Metric, Point, PointAt, Settings};
+use crate::continuation::{Advance, Continuation, LinearResonance, Metric, Point, PointAt, Settings};
 use crate::error::{Result, Status, try_push};
 use crate::harmonics::controller::{AdaptivityController, Refined};
 use crate::harmonics::discretised::Traceable;
@@ -46,6 +46,8 @@ pub(crate) struct Course<'a> {
     pub starts_again: Option<usize>,
     /// Bounds of the steps where the branch is followed for its special points alone.
     pub bands: Option<ResonanceBands>,
+    /// Resonances of the structure with linear forces, ascending, that no step passes where the branch feels them.
+    pub resonances: Vec<LinearResonance>,
     /// Ends of a curve that was entered inside its range.
     pub ends: Option<InnerEnds>,
 }
@@ -186,11 +188,12 @@ impl<'a> BranchTracer<'a> {
             if let Some(bands) = &self.course.bands {
                 bands.shorten_step(&mut continuation);
             }
-            let (point, end) = match continuation.advance(analysis.problem(), self.interrupt)? {
-                Advance::Accepted { point, last } => (point, last.then_some(Status::Ok)),
-                Advance::LeftAtStart { point } => (point, Some(Status::StoppedLeftRange)),
-                Advance::Stopped(status) => return Ok(status),
-            };
+            let (point, end) =
+                match continuation.advance_over(analysis.problem(), &self.course.resonances, self.interrupt)? {
+                    Advance::Accepted { point, last } => (point, last.then_some(Status::Ok)),
+                    Advance::LeftAtStart { point } => (point, Some(Status::StoppedLeftRange)),
+                    Advance::Stopped(status) => return Ok(status),
+                };
 
             // Turn round a branch that comes back along its own points.
             let by = (&settings, self.interrupt);
@@ -361,7 +364,14 @@ impl<'a> BranchTracer<'a> {
         let Some(before) = self.course.before else {
             return Ok(Outside::Gone);
         };
-        let begin = analysis.transfer(begin, began)?;
+        // With other harmonics the first point is another solution: it is solved again with those of the excursion.
+        let start = analysis.transfer(begin, began)?;
+        let solved = if analysis.resolution() == began {
+            None
+        } else {
+            analysis.resolve(&start, true, self.interrupt)?
+        };
+        let begin = solved.unwrap_or(start);
         let settings = Settings {
             end: before,
             ..self.course.settings

@@ -4,7 +4,8 @@
 //! estimates its error and refines it until it meets the tolerance; the analysis records it; peaks, folds and requested
 //! solutions between it and the point before are located; the controller selects the
 //! harmonics of the next step. Where every contact is linear, [`linear_stretch`] takes the place of the continuation, at the
-//! values of [`resonance_grid`]. Where a branch is followed for its special points alone, [`resonance_bands`] bounds the steps. A
+//! values of [`resonance_grid`]. Where a branch is followed for its special points alone, [`resonance_bands`] bounds the steps. No
+//! step of a sweep passes one of the [`linear_resonances`] that the branch feels. A
 //! first point that leads to none within the tolerance is sought again by [`cold_start`]. A branch that comes back along its own
 //! points is found and turned round by [`retracing`]; a curve that is entered inside its range ends by [`inner_ends`].
 //! [`branch_recorder`] stores points.
@@ -16,6 +17,7 @@ mod branch_special_points;
 pub(crate) mod branch_tracer;
 mod cold_start;
 pub(crate) mod inner_ends;
+pub(crate) mod linear_resonances;
 mod linear_stretch;
 mod requested_points;
 pub(crate) mod resonance_bands;

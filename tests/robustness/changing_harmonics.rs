@@ -4,7 +4,7 @@ use crate::common::peers::structure;
 use crate::common::{at_dof, harmonics, sweep};
 use crate::random_problems::random::{Random, from_environment};
 use hbvib::internals::eigen;
-use hbvib::{Branch, Contact, Interrupt, Model, SolverOptions, Status};
+use hbvib::{Branch, Contact, ContactKind, Interrupt, Model, Polynomial, SolverOptions, Status};
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
@@ -198,4 +198,59 @@ fn random_sweeps_turn_only_where_a_fine_sweep_with_all_harmonics_turns() {
 fn thousands_of_random_sweeps_turn_only_where_a_fine_sweep_turns() {
     let first = from_environment("HBVIB_FIRST", 0);
     compare(first..first + from_environment("HBVIB_CASES", 1000));
+}
+
+/// Three masses with quadratic and cubic stiffness of all their motions. The curve from 0.28 turns back, leaves the range at its start and
+/// comes back there to its first point.
+fn closed_curve() -> Model {
+    let stiffness = [1.993, -1.269, 0.0, -1.269, 1.973, -0.704, 0.0, -0.704, 0.704];
+    let mass = [1.934, 0.0, 0.0, 0.0, 0.812, 0.0, 0.0, 0.0, 1.743];
+    let mut model = structure(&mass, &stiffness.map(|k| 0.02 * k), &stiffness);
+    let quadratic = [
+        [0.084, -0.024, 0.0, -0.024, -0.021, -0.078, 0.0, -0.078, -0.054],
+        [-0.024, -0.021, -0.078, -0.021, 0.043, -0.025, -0.078, -0.025, -0.019],
+        [0.0, -0.078, -0.054, -0.078, -0.025, -0.019, -0.054, -0.019, 0.017],
+    ];
+    let mut cubic = [0.0; 81];
+    for (i, k) in [0.087, 0.084, 0.112].into_iter().enumerate() {
+        cubic[40 * i] = k;
+    }
+    let law = Polynomial::tensors(3, &[], quadratic.as_flattened(), &cubic).unwrap();
+    model
+        .add_contact(&Contact::over(vec![0, 1, 2], ContactKind::Polynomial(law)))
+        .unwrap();
+    model.add_force(0, 1, 0.091.into()).unwrap();
+    model
+}
+
+#[test]
+fn a_closed_curve_is_followed_once_whichever_harmonics_a_tolerance_selects() {
+    let model = closed_curve();
+    let with = |solver: SolverOptions| {
+        let solver = SolverOptions {
+            max_points: 300,
+            ..solver
+        };
+        let branch = sweep(&model, &solver, 0.28, 1.0, &[]);
+        assert_eq!(branch.status(), Status::StoppedClosed, "{:?}", branch.reason());
+        let peaks: Vec<_> = branch.peaks().iter().map(|p| (p.omega, p.amplitude)).collect();
+        (peaks, branch.folds().len())
+    };
+    let (truth, folds) = with(harmonics(15));
+    assert!(!truth.is_empty() && folds > 0);
+    for tolerance in [1e-2, 1e-3, 1e-4] {
+        let (peaks, turns) = with(SolverOptions {
+            tolerance,
+            ..SolverOptions::default()
+        });
+        assert_eq!(
+            (peaks.len(), turns),
+            (truth.len(), folds),
+            "{tolerance}: {peaks:?}, {truth:?}"
+        );
+        for (found, exact) in peaks.iter().zip(&truth) {
+            let error = (found.0 / exact.0 - 1.0).hypot(found.1 / exact.1 - 1.0);
+            assert!(error <= 2.0 * tolerance, "{tolerance}: {found:?}, {exact:?}");
+        }
+    }
 }

@@ -29,6 +29,7 @@ use crate::results::{Branch, Descent};
 use crate::tracing::branch_recorder::Ending;
 use crate::tracing::branch_tracer::{BranchTracer, Course};
 use crate::tracing::inner_ends::{Dropped, InnerEnds};
+use crate::tracing::linear_resonances::linear_resonances;
 use crate::tracing::resonance_bands::ResonanceBands;
 use num_complex::Complex64;
 
@@ -270,6 +271,7 @@ fn follow(
     let held = response.branch().reduction().held_by_contacts;
     let mut course = Course {
         bands: bands(model, (solver, detail), (&forced, sweep), interrupt)?,
+        resonances: linear_resonances(model, sweep, interrupt)?,
         ..course_of(solver, range, settings)
     };
     let first = match inside {
@@ -355,6 +357,7 @@ fn course_of<'a>(solver: &SolverOptions, range: &ForcedOptions<'a>, settings: Se
         before: Some((2.0 * range.omega_start - range.omega_stop).max(0.5 * range.omega_start)),
         starts_again: range.guess.is_none().then_some(solver.harmonics),
         bands: None,
+        resonances: Vec::new(),
         ends: None,
     }
 }

@@ -70,6 +70,7 @@ pub(crate) fn course<'a>(
         before: None,
         starts_again: None,
         bands: None,
+        resonances: Vec::new(),
     };
     (course, settings)
 }
