@@ -69,7 +69,7 @@ def decay_backbone(time: ArrayLike, signal: ArrayLike, *, cycles: int = 5, compo
     >>> t = np.arange(0, 60, 0.01)
     >>> found = hbvib.decay_backbone(t, np.exp(-0.02 * t) * np.cos(2 * t))
     >>> found.omega[:1].round(4), found.damping[:1].round(4)
-    (array([2.]), array([0.01]))
+    (array([2.0001]), array([0.01]))
     """
     t, x = np.asarray(time, float), np.asarray(signal, float)
     if t.ndim != 1 or t.shape != x.shape or len(t) < 10:
