@@ -3718,7 +3718,8 @@ hbvib_status hbvib_mission_options_init(hbvib_mission_options *o, size_t size_of
 
 /// One resonance over a mission, speed against time, by the slow flow of its nonlinear mode without
 /// the memory of sliders: amplitudes, cycles of each amplitude, and the sum of Miner. Several
-/// resonances are as many calls, whose sums add.
+/// resonances are as many calls, whose sums add. No error of the damage is told: in quick passages
+/// it is too small (docs/life.md has figures); sum turns of hbvib_time_sweep where they count.
 ///
 /// branch        a nonlinear mode.
 /// model         as for hbvib_branch_synthesis; its own speed has no effect.
@@ -4843,8 +4844,8 @@ hbvib_status hbvib_wheel_identify(const hbvib_model *cyclic,
 /// numbers      receives the new number of each, -1 where it has none; or NULL.
 /// first        receives the number of the first mode, or NULL.
 /// left_out     receives the largest relative error of a frequency of the tuned modes by the modes
-///              of the blade that are left out, as estimated; infinity where one lies above the
-///              first of these; or NULL.
+///              of the blade that are left out, as estimated, with all contacts stuck and with all
+///              of them free; infinity where one lies above the first of these; or NULL.
 /// out          receives the new sector; untouched on error. Free it by hbvib_model_free.
 /// Errors: HBVIB_E_ARGUMENT (modes, families; dofs twice, fixed, on the right face, with a contact
 /// or spring, or coupled to another sector), HBVIB_E_INDEX, HBVIB_E_DIMENSION (lengths),

@@ -12,13 +12,17 @@ if TYPE_CHECKING:
 
     from ._results import FloatArray
 
+#: Difference of two steps of time, relative, that is rounding.
+_EVEN = 1e-3
+
 
 class Decay(NamedTuple):
     """Frequency and damping of a decay against its amplitude, one number for each window; made by decay_backbone.
 
     amplitude                of the displacement at the middle of the window.
-    omega, sigma             angular frequency and its standard deviation.
-    damping, damping_sigma   damping ratio and its standard deviation.
+    omega, sigma             natural angular frequency omega0, as modes have it, and its standard deviation. The motion crosses zero
+                             omega0 (1 - zeta^2)^1/2 / pi times in a unit of time.
+    damping, damping_sigma   damping ratio zeta and its standard deviation: the logarithm of the amplitude falls at the rate zeta omega0.
 
     >>> import hbvib
     >>> import numpy as np
@@ -52,11 +56,12 @@ def decay_backbone(time: ArrayLike, signal: ArrayLike, *, cycles: int = 5, compo
 
     Zero crossings are those of lines through both samples, extremes those of parabolas through the samples around the largest, a sixth
     of half a period to both sides: single samples would add their noise, the more so the smaller the motion is.
-    In each window of `cycles` periods lines are fitted to the instants of the crossings, whose slope is half a period, and to the
-    logarithms of the extremes, whose slope is -D omega, both as means of two neighbours; what is left of both gives the standard
-    deviations, right for errors that are independent from one crossing or extreme to the next.
+    In each window of `cycles` periods lines are fitted to the instants of the crossings, whose slope is half a period 2 pi / w, and to
+    the logarithms of the extremes, whose slope is -d, both as means of two neighbours; what is left of both gives the standard
+    deviations, right for errors that are independent from one crossing or extreme to the next. Frequency and damping ratio are those of
+    modes, omega0 = (w^2 + d^2)^1/2 and zeta = d / omega0.
 
-    time, signal   samples at equal distances; ten a period or more.
+    time, signal   finite samples at equal distances, to a thousandth of them; ten a period or more.
     component      0: displacement, 1: velocity, 2: acceleration, whose amplitudes are divided by omega once or twice.
 
     >>> import hbvib
@@ -64,13 +69,23 @@ def decay_backbone(time: ArrayLike, signal: ArrayLike, *, cycles: int = 5, compo
     >>> t = np.arange(0, 60, 0.01)
     >>> found = hbvib.decay_backbone(t, np.exp(-0.02 * t) * np.cos(2 * t))
     >>> found.omega[:1].round(4), found.damping[:1].round(4)
-    (array([2.]), array([0.01]))
+    (array([2.0001]), array([0.01]))
     """
     t, x = np.asarray(time, float), np.asarray(signal, float)
     if t.ndim != 1 or t.shape != x.shape or len(t) < 10:
         raise ValueError(f"time and signal have shapes {t.shape} and {x.shape}, need one dimension, equal lengths, 10 samples")
     if cycles < 2:
         raise ValueError(f"cycles = {cycles}, needs at least 2")
+    for name, values in (("time", t), ("signal", x)):
+        bad = np.flatnonzero(~np.isfinite(values))
+        if len(bad):
+            raise ValueError(f"{name}[{bad[0]}] = {values[bad[0]]}, needs finite numbers: cut the signal, or fill its gaps")
+    steps = np.diff(t)
+    uneven = np.flatnonzero(~((abs(steps - steps[0]) <= _EVEN * steps[0]) & (steps > 0)))
+    if len(uneven):
+        k = int(uneven[0])
+        raise ValueError(f"time[{k + 1}] - time[{k}] = {steps[k]:.6g} after steps of {steps[0]:.6g}, needs equal distances that rise: "
+                         "interpolate the signal, or make times that were rounded from the sampling rate")
     before = np.flatnonzero(x[:-1] * x[1:] < 0)
     crossing = t[before] - x[before] * (t[before + 1] - t[before]) / (x[before + 1] - x[before])
     instants, extremes = [], []
@@ -98,10 +113,15 @@ def decay_backbone(time: ArrayLike, signal: ArrayLike, *, cycles: int = 5, compo
             continue
         middle = 0.5 * (own[0] + own[-1])
         rate, of_rate, height = _line(at[within] - middle, np.log(size[within]))
-        omega = np.pi / half
-        sigma = omega * of_half / half
+        turning = np.pi / half
+        of_turning = turning * of_half / half
+        # Both of modes, with their deviations; velocity and displacement of x = exp((-d + iw) t) have the ratio omega0.
+        omega = float(np.hypot(turning, rate))
+        cosine, zeta = turning / omega, -rate / omega
+        sigma = float(np.hypot(cosine * of_turning, zeta * of_rate))
+        of_zeta = cosine / omega * float(np.hypot(cosine * of_rate, zeta * of_turning))
         amplitude = np.exp(height) / omega ** component
-        rows.append((amplitude, omega, max(sigma, 1e-9 * omega), -rate / omega, max(of_rate / omega, 1e-9)))
+        rows.append((amplitude, omega, max(sigma, 1e-9 * omega), zeta, max(of_zeta, 1e-9)))
     if not rows:
         raise ValueError("the signal has too few zero crossings for a window: give a longer signal, or fewer cycles")
     return Decay(*np.array(rows).T)

@@ -35,7 +35,7 @@ class RunUp(NamedTuple):
     largest        of the run-up, at the angular frequency largest_omega and the time largest_time.
     error          relative error of it, from three leads of the integration in time. Where integrated is 0 it is an estimate that may be
                    too small, NaN where the mode has no steady resonance to compare with.
-    without_memory the largest displacement without the memory of sliders.
+    without_memory the largest displacement by the slow flow without the memory of sliders.
     steady         largest displacement of the highest steady resonance, with the mean and all harmonics; factor is largest over it.
     slow_flow      the largest displacement by the slow flow alone.
     integrated     turns that were integrated in time; 0: none.
@@ -81,7 +81,8 @@ class Mission(NamedTuple):
 
     amplitude      at each time, of the degree of freedom in the fundamental.
     cycles         below the first edge, between edges, and above the last one.
-    damage         sum of Miner of each stress; those of several resonances add.
+    damage         sum of Miner of each stress; those of several resonances add. No error is told: the memory of sliders is left out, by
+                   which damage is too small in quick passages (docs/life.md has figures); there sum the turns of a time sweep.
     passage_time, passage_omega, passage_rate, passage_amplitude, passage_steady, passage_cycles   of each passage through the resonance:
                    time, angular frequency, its change per time and size of the largest amplitude, the steady one, and the cycles with
                    at least 1/sqrt(2) of the largest.

@@ -1,17 +1,15 @@
 """Functions of universal files (UFF, data sets 58 and 58b): frequency responses and histories of test programs."""
 from __future__ import annotations
 
-import os
-import re
-import struct
 from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 import numpy as np
 
+from ._universal_lines import UniversalLines
+
 if TYPE_CHECKING:
     from ._results import ComplexArray, FloatArray
 
-_MARK = re.compile(rb"(?m)^ {0,4}-1[ \t]*\r?$")
 #: Ordinate types: numpy type of its numbers, and whether these are pairs.
 _TYPES = {2: ("f4", False), 4: ("f8", False), 5: ("f4", True), 6: ("f8", True)}
 #: Kinds of quantities, as data set 58 numbers them.
@@ -64,6 +62,7 @@ class TestFunction(NamedTuple):
 
 def read_uff(path: Any) -> list[TestFunction]:
     """Reads the functions (data sets 58, text, and 58b, binary) of a universal file; other data sets are passed over.
+    A file that is damaged is a ReadError with file, line and reason: numbers that are not finite, more or fewer than its head tells.
 
     >>> import hbvib, hbvib.io
     >>> import os, tempfile
@@ -79,72 +78,69 @@ def read_uff(path: Any) -> list[TestFunction]:
     >>> found.x, found.values, found.quantity, found.node
     (array([10. , 10.5]), array([1.+0.j, 0.-2.j]), 'acceleration', 7)
     """
-    with open(os.fspath(path), "rb") as file:
-        data = file.read()
+    lines = UniversalLines(path)
     found: list[TestFunction] = []
-    at = 0
-    while True:
-        mark = _MARK.search(data, at)
-        if mark is None:
-            return found
-        line, begin = _line(data, mark.end() + 1)
-        words = line.split()
-        if words and words[0] in ("58", "58b", "58B"):
-            one, at = _function(data, begin, line if words[0] != "58" else "")
-            found.append(one)
+    for number, first in lines.data_sets():
+        if number == 58:
+            found.append(function(lines, first))
         else:
-            at = begin
-        end = _MARK.search(data, at)
-        if end is None:
-            return found
-        at = end.end()
+            lines.pass_over()
+    return found
 
 
-def _line(data: bytes, at: int) -> tuple[str, int]:
-    end = data.find(b"\n", at)
-    end = len(data) if end < 0 else end
-    return data[at:end].decode("latin-1").rstrip("\r"), end + 1
+#: Columns of the whole numbers in the sixth line of a function, and of those in the seventh.
+_FIELDS = ((0, 5, "type of function"), (41, 51, "response node"), (51, 55, "response direction"), (66, 76, "reference node"),
+           (76, 80, "reference direction"))
+_FORM = ((0, 10, "type of values"), (10, 20, "number of values"), (20, 30, "spacing"))
 
 
-def _function(data: bytes, at: int, binary: str) -> tuple[TestFunction, int]:
-    lines = []
-    for _ in range(11):
-        line, at = _line(data, at)
-        lines.append(line)
-    try:
-        of = lines[5]
-        kind, node, direction = int(of[:5]), int(of[41:51]), int(of[51:55])
-        reference, along = int(of[66:76]), int(of[76:80])
-        form = lines[6]
-        ordinate, count, even = int(form[:10]), int(form[10:20]), int(form[20:30])
-        first, step = float(form[30:43]), float(form[43:56])
-        quantity = int(lines[8][:10])
-        numpy_type, pairs = _TYPES[ordinate]
-    except (ValueError, KeyError) as error:
-        raise ValueError(f"data set 58: the head cannot be read ({error})") from None
+def function(lines: UniversalLines, first_line: str) -> TestFunction:
+    """Reads a function and the end of its data set, whose first line tells a binary one."""
+    text = [lines.expect("a line of the head of a function").strip() for _ in range(5)]
+    line = lines.expect("the line of response and reference")
+    kind, node, direction, reference, along = (lines.whole(line[a:b], what) for a, b, what in _FIELDS)
+    line = lines.expect("the line of the form of values")
+    ordinate, count, even = (lines.whole(line[a:b], what) for a, b, what in _FORM)
+    first, step = (lines.real(line[a:a + 13].strip()) for a in (30, 43))
+    if ordinate not in _TYPES:
+        lines.fail(f"values of type {ordinate}, needs 2, 4, 5 or 6")
+    if even not in (0, 1):
+        lines.fail(f"spacing = {even}, needs 0 (uneven) or 1 (even)")
+    if not 0 <= count <= len(lines.data):
+        lines.fail(f"{count} values of a function in a file of {len(lines.data)} bytes, needs 0 or more, as many as follow")
+    lines.expect("the line of the abscissa")
+    quantity = lines.whole(lines.expect("the line of the ordinate")[:10], "quantity")
+    for _ in range(2):
+        lines.expect("a line of the head of a function")
+    width, pairs = _TYPES[ordinate]
     columns = (2 if pairs else 1) + (0 if even else 1)
-    if binary:
-        order, size = int(binary[7:13]), int(binary[31:43])
-        numbers = _binary(data[at:at + size], numpy_type, "<" if order == 1 else ">", (count, columns, even))
-        at += size
+    if "b" in first_line.lower():
+        numbers = _binary(lines, first_line, width, (count, columns, even))
     else:
-        end = _MARK.search(data, at)
-        text = data[at:len(data) if end is None else end.start()].decode("latin-1").replace("D", "e")
-        numbers = np.array(text.split(), float)
-    if numbers.size < count * columns:
-        raise ValueError(f"data set 58: {numbers.size} numbers, needs {count * columns}")
-    table = numbers[:count * columns].reshape(count, columns)
+        numbers = np.array(lines.reals(count * columns, f"numbers of a function of {count} values"), float)
+    lines.end(f"the {count} values of the function")
+    table = numbers.reshape(count, columns)
     x = first + step * np.arange(count) if even else table[:, 0]
     values = table[:, -2] + 1j * table[:, -1] if pairs else table[:, -1]
-    text_of_head = [line.strip() for line in lines[:5]]
     x = np.asarray(x, np.float64)
-    return TestFunction(text_of_head, kind, node, direction, reference, along, _QUANTITIES.get(quantity, ""), x, values), at
+    return TestFunction(text, kind, node, direction, reference, along, _QUANTITIES.get(quantity, ""), x, values)
 
 
-def _binary(data: bytes, numpy_type: str, order: str, shape: tuple[int, int, int]) -> FloatArray:
+def _binary(lines: UniversalLines, first_line: str, width: str, shape: tuple[int, int, int]) -> FloatArray:
+    words = lines.wholes(" ".join(first_line.split()[1:]), "binary function")
+    if len(words) < 4 or words[0] not in (1, 2) or words[1] != 2:
+        lines.fail("needs the byte order 1 or 2, the format 2 (IEEE 754), lines of the head and bytes of a binary function")
     count, columns, even = shape
-    if even or numpy_type == "f4":
-        return np.frombuffer(data, np.dtype(order + numpy_type))[:count * columns].astype(float)
-    # Abscissas of uneven spacing are single where ordinates are double.
-    form = order + "f" + "d" * (columns - 1)
-    return np.array([row for row in struct.iter_unpack(form, data[:count * struct.calcsize(form)])]).ravel()
+    order = "<" if words[0] == 1 else ">"
+    # Abscissas of uneven spacing are single; some programs write them as the ordinates, and others tell a wrong length.
+    for of_x in (width,) if even else ("f4", width):
+        form = np.dtype([("x", order + of_x), ("value", order + width, (columns - 1,))] if not even else [
+            ("value", order + width, (columns,))])
+        if lines.mark_follows(count * form.itemsize):
+            rows = np.frombuffer(lines.take(count * form.itemsize), form)
+            values = rows["value"].astype(float).reshape(count, -1)
+            numbers = values if even else np.column_stack([rows["x"].astype(float), values])
+            if not np.isfinite(numbers).all():
+                lines.fail("a value of a binary function is not finite")
+            return numbers.ravel()
+    lines.fail(f"the data set does not end after {count} values; {words[3]} bytes are told")

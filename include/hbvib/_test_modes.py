@@ -1,20 +1,17 @@
 """Modes of tests: data at nodes of universal files (UFF, data set 55)."""
 from __future__ import annotations
 
-import os
-import re
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional
 
 import numpy as np
 
 from ._measured import Measured
-from ._test_files import _MARK, _line
+from ._test_files import function
+from ._universal_lines import UniversalLines
 
 if TYPE_CHECKING:
     from ._results import ComplexArray, FloatArray, IntArray
 
-#: Numbers of fixed width may touch each other.
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
 #: Kinds of analysis: a normal mode, and complex modes of first and second order.
 _NORMAL, _COMPLEX = 2, (3, 7)
 
@@ -59,6 +56,7 @@ class TestMode(NamedTuple):
 
 def read_uff_modes(path: Any) -> list[TestMode]:
     """Reads the modes (data sets 55 of normal and complex modes) of a universal file; other data sets are passed over.
+    A file that is damaged is a ReadError with file, line and reason, as in read_uff.
 
     >>> import hbvib, hbvib.io
     >>> import os, tempfile
@@ -72,68 +70,59 @@ def read_uff_modes(path: Any) -> list[TestMode]:
     >>> found.number, found.frequency, found.damping, found.shape.real
     (3, 12.5, 0.005, array([[ 0. ,  1. , -0.5]]))
     """
-    with open(os.fspath(path), "rb") as file:
-        data = file.read()
+    lines = UniversalLines(path)
     found: list[TestMode] = []
-    at = 0
-    while True:
-        begin = _MARK.search(data, at)
-        if begin is None:
-            return found
-        line, after = _line(data, begin.end() + 1)
-        words = line.split()
-        if words and words[0].lower() == "58b":
-            # Numbers may look like the end of the data set: their length is in the line.
-            for _ in range(11):
-                _, after = _line(data, after)
-            after += int(line[31:43])
-        end = _MARK.search(data, after)
-        last = len(data) if end is None else end.start()
-        if words and words[0] == "55":
-            one = _mode(data[after:last].decode("latin-1").splitlines())
+    for number, first in lines.data_sets():
+        if number == 55:
+            one = _mode(lines)
             found += [] if one is None else [one]
-        at = len(data) if end is None else end.end()
+        elif number == 58:
+            # Numbers of binary functions may look like the end of the data set.
+            function(lines, first)
+        else:
+            lines.pass_over()
+    return found
 
 
-def _mode(lines: list[str]) -> Optional[TestMode]:
-    try:
-        head = [int(word) for word in lines[5].split()]
-        analysis, kind, per_node = head[1], head[4], head[5]
-        if analysis != _NORMAL and analysis not in _COMPLEX:
-            return None
-        # The counts of whole and other numbers stand first; the numbers go on over further lines.
-        integers, at = [int(word) for word in lines[6].split()], 7
-        while len(integers) < 2 + integers[0]:
-            integers += [int(word) for word in lines[at].split()]
-            at += 1
-        reals: list[float] = []
-        while len(reals) < integers[1]:
-            reals += _numbers(lines[at])
-            at += 1
-        nodes, rows = [], []
-        count = per_node * (2 if kind == 5 else 1)
-        while at < len(lines) and lines[at].strip():
-            nodes.append(int(lines[at].split()[0]))
-            at += 1
-            own: list[float] = []
-            while len(own) < count:
-                own += _numbers(lines[at])
-                at += 1
-            rows.append(own[:count])
-        if kind not in (2, 5):
-            raise ValueError(f"data of type {kind}, needs 2 (real) or 5 (complex)")
-        frequency, damping = reals[0], reals[2] if analysis == _NORMAL else 0.0
-        if analysis in _COMPLEX:
-            size = float(np.hypot(reals[0], reals[1]))
-            frequency, damping = size / (2 * np.pi), -reals[0] / size if size > 0 else 0.0
-    except (ValueError, IndexError) as error:
-        raise ValueError(f"data set 55: it cannot be read ({error})") from None
+def _mode(lines: UniversalLines) -> Optional[TestMode]:
+    text = [lines.expect("a line of text of data set 55").strip() for _ in range(5)]
+    head = lines.wholes(lines.expect("the kind of data set 55"), "kind of data")
+    if len(head) < 6:
+        lines.fail(f"{len(head)} numbers of the kind of data set 55, needs 6")
+    analysis, kind, per_node = head[1], head[4], head[5]
+    if analysis != _NORMAL and analysis not in _COMPLEX:
+        lines.pass_over()
+        return None
+    if kind not in (2, 5):
+        lines.fail(f"data of type {kind}, needs 2 (real) or 5 (complex)")
+    if not 1 <= per_node <= len(lines.data):
+        lines.fail(f"{per_node} values of a node, needs at least 1")
+    # The counts of whole and other numbers stand first; the numbers go on over further lines.
+    integers = lines.wholes(lines.expect("the whole numbers of the analysis"), "numbers of the analysis")
+    needed = (0, 3 if analysis == _NORMAL else 2)
+    if len(integers) < 2 or any(not least <= count <= 1000 for least, count in zip(needed, integers)):
+        lines.fail(f"the counts {integers[:2]} of whole and real numbers of the analysis, needs {needed[0]} and {needed[1]} at least")
+    while len(integers) < 2 + integers[0]:
+        integers += lines.wholes(lines.expect("more whole numbers of the analysis"), "numbers of the analysis")
+    reals = lines.reals(integers[1], "numbers of the analysis of data set 55")
+    nodes, rows = [], []
+    count = per_node * (2 if kind == 5 else 1)
+    while True:
+        line = lines.item()
+        if line is None:
+            break
+        if not line.strip():
+            continue
+        own = lines.wholes(line, "node")
+        if len(own) != 1:
+            lines.fail(f"{line.strip()!r} needs to be the number of a node")
+        nodes += own
+        rows.append(lines.reals(count, f"values of node {own[0]} of data set 55"))
+    frequency, damping = reals[0], reals[2] if analysis == _NORMAL else 0.0
+    if analysis in _COMPLEX:
+        size = float(np.hypot(reals[0], reals[1]))
+        frequency, damping = size / (2 * np.pi), -reals[0] / size if size > 0 else 0.0
     table = np.array(rows, float).reshape(len(rows), count)
     shape = table[:, 0::2] + 1j * table[:, 1::2] if kind == 5 else table.astype(complex)
-    text = [line.strip() for line in lines[:5]]
-    number = integers[3] if len(integers) > 3 else 0
+    number = integers[3] if integers[0] > 1 else 0
     return TestMode(text, number, float(frequency), float(damping), np.array(nodes, np.int64), shape)
-
-
-def _numbers(line: str) -> list[float]:
-    return [float(word.replace("D", "e").replace("d", "e")) for word in _NUMBER.findall(line)]

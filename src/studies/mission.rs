@@ -3,7 +3,8 @@
 //! The amplitude follows the slow flow of the mode, q′ = P (q − q_s), with the steady amplitude q_s = u₁ᴴF/Z and the slow root P at the
 //! frequency of the time. A step is exact for q_s on a line and constant P, so that it is as long as the frequency allows: short against
 //! its distance to the resonance, or the bandwidth, or the time in which the phase of a quick crossing turns. Dwells and slow changes cost
-//! one step each. The memory of sliders is left out; see [`run_up`](crate::run_up).
+//! one step each. The memory of sliders is left out, which makes amplitudes and damage of quick passages too small; see
+//! [`run_up`](crate::run_up).
 
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
@@ -69,7 +70,7 @@ pub struct Mission {
     pub amplitude: Vec<f64>,
     /// Numbers of cycles with amplitudes below the first edge, between edges, and above the last one.
     pub cycles: Vec<f64>,
-    /// Damage of each stress, as Miner's sum.
+    /// Damage of each stress, as Miner's sum. No error is told; it is too small in quick passages.
     pub damage: Vec<f64>,
     /// Passages through the resonance, in the order of time.
     pub crossings: Vec<MissionCrossing>,

@@ -65,7 +65,8 @@ pub struct RunUp {
     pub slow_flow: f64,
     /// Number of turns that were integrated in time: all turns of the run-up, some, or 0.
     pub integrated: usize,
-    /// The largest displacement without the memory of sliders.
+    /// The largest displacement by the slow flow alone without the memory of sliders, under the work of the forces on the
+    /// nonlinear mode; that of a mission with all harmonics and the other modes.
     pub without_memory: f64,
     /// Largest displacement of the highest steady resonance within the mode, measured as `largest`, with the mean and
     /// all harmonics; NaN without a resonance.
@@ -140,6 +141,11 @@ pub fn run_up(branch: &Branch, model: &Model, options: &RunUpOptions, interrupt:
             break;
         }
     }
+    if !others.is_empty() {
+        // The force along the linear shape is whole only together with the defect, which has contact forces by the other modes beside the
+        // memory.
+        without_memory = by_the_whole_mode(&flow)?;
+    }
     let steady = match &highest {
         Some(peak) => largest_steady(&table, &others, &peak.at)?,
         None => f64::NAN,
@@ -184,6 +190,23 @@ pub fn run_up(branch: &Branch, model: &Model, options: &RunUpOptions, interrupt:
     }
     found.turns = seen.turns;
     Ok(found)
+}
+
+/// Largest displacement of the slow flow under the work of the forces on the whole nonlinear mode, without defect: the solution of the
+/// first order, then twice that with q″.
+///
+/// # Errors
+/// Those of [`SlowFlow::run`].
+fn by_the_whole_mode(flow: &SlowFlow<'_>) -> Result<f64> {
+    let table = flow.table.under_whole_force()?;
+    let flow = SlowFlow { table: &table, ..*flow };
+    let mut path = SlowPath::default();
+    let mut largest = 0.0;
+    for _ in 0..3 {
+        let (next, seen) = flow.run(&Defect::default(), &path)?;
+        (path, largest) = (next, seen.largest);
+    }
+    Ok(largest)
 }
 
 /// Forces and damping on a mode, and its highest steady resonance under them, compared with the computed one; `None`

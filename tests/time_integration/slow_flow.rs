@@ -301,6 +301,94 @@ fn memory_of_the_slider_takes_the_first_order_away() {
     );
 }
 
+/// Two or four equal masses on springs with sliders, forced at one mass; damping as 0.02 of the stiffness.
+fn equal_masses(stiffness: &[f64], contacts: &[Contact], (dof, force): (usize, f64)) -> Model {
+    let n = stiffness.len().isqrt();
+    let mut mass = vec![0.0; n * n];
+    mass.iter_mut().step_by(n + 1).for_each(|m| *m = 1.0);
+    let mut model = Model::new(n).unwrap();
+    model
+        .set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &mass))
+        .unwrap();
+    model
+        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, stiffness))
+        .unwrap();
+    model.set_rayleigh(0.0, 0.02).unwrap();
+    for contact in contacts {
+        model.add_contact(contact).unwrap();
+    }
+    model.add_force(dof, 1, force.into()).unwrap();
+    model
+}
+
+/// Without the memory a slow run-up is that with it, at each degree of freedom, and a passage of a Campbell diagram, which has the
+/// fundamental of the mode alone: other modes of several masses move the sliders, which is no memory.
+#[test]
+fn without_memory_is_near_the_slow_flow_of_several_masses() {
+    let two = equal_masses(
+        &[2.0, -1.0, -1.0, 1.0],
+        &[Contact::jenkins(0, None, 0.7, 1.0, 0.05)],
+        (0, 0.25),
+    );
+    let k = [
+        2.0, -1.0, 0.0, 0.0, -1.0, 2.0, -1.0, 0.0, 0.0, -1.0, 2.0, -1.0, 0.0, 0.0, -1.0, 1.0,
+    ];
+    let sliders = [
+        Contact::jenkins(1, None, 0.6, 1.0, 0.05),
+        Contact::jenkins(3, Some(2), 0.5, 1.0, 0.04),
+    ];
+    let four = equal_masses(&k, &sliders, (3, 0.02));
+    // The last number is what the other modes are worth: they stick in the slow flow, and follow the mode's shape without the memory.
+    for (name, model, (start, stop), modal, allowed) in [
+        ("two masses", two, (0.5, 0.8), 1.8, 5e-3),
+        ("one slider of three masses", chain(0.06, 1), (0.5, 1.0), 0.8, 5e-3),
+        ("three sliders of three masses", chain(0.05, 3), (0.5, 1.0), 0.8, 5e-3),
+        ("four masses", four, (0.25, 0.55), 0.2, 2e-2),
+    ] {
+        let last = model.ndof() - 1;
+        let solver = SolverOptions {
+            harmonics: 5,
+            response_dof: Some(last),
+            tolerance: 0.0,
+            ..SolverOptions::default()
+        };
+        let range = ModeOptions {
+            log10_start: -2.0,
+            log10_stop: modal,
+            ..ModeOptions::default()
+        };
+        let branch = nonlinear_mode(&model, &solver, &range, &mut Hooks::default()).unwrap();
+        let rate = 1e-4;
+        for dof in 0..=last {
+            let options = RunUpOptions {
+                omega_start: start,
+                omega_stop: stop,
+                rate,
+                dof: Some(dof),
+                integrated_turns: 0,
+                ..RunUpOptions::default()
+            };
+            let found = run_up(&branch, &model, &options, &Interrupt::none()).unwrap();
+            let ratio = found.without_memory / found.slow_flow;
+            println!("{name}, {dof}: {ratio}");
+            assert!((ratio - 1.0).abs() < allowed, "{name}, {dof}: {ratio}");
+            assert!((found.largest - found.slow_flow).abs() < f64::EPSILON);
+            if dof == last {
+                let passage = hbvib::CampbellResponseOptions {
+                    force_factors: &[1.0],
+                    engine_order: 1.0,
+                    acceleration: rate,
+                    ..hbvib::CampbellResponseOptions::default()
+                };
+                let passed = hbvib::campbell_response(&branch, &model, &passage, &Interrupt::none()).unwrap()[0].passed;
+                println!("{name}: {} and {passed} of a passage", found.without_memory);
+                // Harmonics and the other modes, which the passage leaves out.
+                assert!((found.without_memory / passed - 1.0).abs() < 1.5e-2, "{name}: {passed}");
+            }
+        }
+    }
+}
+
 #[test]
 fn bad_run_ups_are_refused() {
     let model = rubbing_mass(0.05);

@@ -341,10 +341,11 @@ fn a_decay_is_a_backbone() {
             assert!(output.status.success(), "{}", crate::common::printed(&output.stderr));
             let json: serde_json::Value =
                 serde_json::from_str(&fs::read_to_string(folder.join("fit.json")).unwrap()).unwrap();
-            // The frequency of a decay is that of the mode times (1 - D^2)^1/2; the model has a damping of 0.1.
-            for (k, truth) in [0.9999, 0.2].into_iter().enumerate() {
+            // The frequency of the damped motion, that of the mode times (1 - D^2)^1/2, would give a stiffness of 0.9999. The model has a
+            // damping of 0.1.
+            for (k, (truth, allowed)) in [(1.0, 3e-5), (0.2, 2e-4)].into_iter().enumerate() {
                 let theta = json["theta"][k].as_f64().unwrap();
-                assert!((theta / truth - 1.0).abs() < 2e-4, "{order} {kind}: {json}");
+                assert!((theta / truth - 1.0).abs() < allowed, "{order} {kind}: {json}");
             }
             let figure = fs::read_to_string(folder.join("fit.svg")).unwrap();
             assert!(figure.contains("log10 of the modal amplitude") && figure.matches("<circle").count() > 3);

@@ -310,7 +310,8 @@ pub unsafe extern "C" fn hbvib_mission_options_init(o: *mut hbvib_mission_option
 
 /// One resonance over a mission, speed against time, by the slow flow of its nonlinear mode without
 /// the memory of sliders: amplitudes, cycles of each amplitude, and the sum of Miner. Several
-/// resonances are as many calls, whose sums add.
+/// resonances are as many calls, whose sums add. No error of the damage is told: in quick passages
+/// it is too small (docs/life.md has figures); sum turns of hbvib_time_sweep where they count.
 ///
 /// branch        a nonlinear mode.
 /// model         as for hbvib_branch_synthesis; its own speed has no effect.

@@ -37,7 +37,8 @@ pub struct BladeModes {
     /// Number of the first mode in the reduced sector.
     pub first: usize,
     /// Estimate of the largest relative error of a frequency by the omitted modes, over the requested tuned modes of
-    /// all nodal diameters. Infinite where one lies above the first omitted mode.
+    /// all nodal diameters, with all contacts stuck and with all of them free. Infinite where one lies above the first
+    /// omitted mode.
     pub left_out: f64,
     basis: Basis,
 }

@@ -1,7 +1,7 @@
 //! A nonlinear mode as a table over its amplitude: an oscillator, and the motions of what is observed and of contacts.
 
 use crate::analysis::synthesis::{Load, Refinement, State, form};
-use crate::error::{Result, fail, try_push, try_vec};
+use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::inner;
 use crate::linalg::sparse_storage::sparse::Csc;
@@ -62,6 +62,8 @@ pub(crate) struct ModeTable {
     /// Logarithm ln a of the modal amplitude at each node.
     ln: Vec<f64>,
     numbers: Vec<[f64; NUMBERS]>,
+    /// Work of the forces on the whole mode over the modal amplitude, u₁ᴴ F, at each node.
+    whole_forces: Vec<Complex64>,
     slopes: Vec<[f64; NUMBERS]>,
     /// Motions at each node: observed displacement, then relative motions, `harmonics` coefficients each; all but the
     /// mean are divided by a.
@@ -93,6 +95,7 @@ struct Node {
     log10: f64,
     amplitude: f64,
     numbers: [f64; NUMBERS],
+    whole_force: Complex64,
     fundamental: Vec<Complex64>,
     motions: Vec<Complex64>,
 }
@@ -191,6 +194,7 @@ impl ModeTable {
             rows,
             ln: Vec::new(),
             numbers: Vec::new(),
+            whole_forces: Vec::new(),
             slopes: Vec::new(),
             motions: Vec::new(),
             is_linear_below: nodes[0].log10 <= linear,
@@ -226,12 +230,36 @@ impl ModeTable {
             }
             let force = Complex64::new(node.numbers[3], node.numbers[4]) * turn.conj();
             (node.numbers[3], node.numbers[4]) = (force.re, force.im);
+            try_push(&mut table.whole_forces, node.whole_force * turn.conj(), CONTEXT)?;
             try_push(&mut table.ln, node.amplitude.ln(), CONTEXT)?;
             try_push(&mut table.numbers, node.numbers, CONTEXT)?;
             crate::error::try_extend(&mut table.motions, &node.motions, CONTEXT)?;
         }
         table.slopes = monotone_slopes(&table.ln, &table.numbers)?;
         Ok(table)
+    }
+
+    /// The table with the force u₁ᴴ F on the whole nonlinear mode in place of that along its linear shape. The other modes then act on
+    /// this one by its shape u₁ alone, so that a slow flow needs no forces of contacts from their motions.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn under_whole_force(&self) -> Result<Self> {
+        let mut numbers = try_copy(&self.numbers, CONTEXT)?;
+        for (numbers, force) in numbers.iter_mut().zip(&self.whole_forces) {
+            (numbers[3], numbers[4]) = (force.re, force.im);
+        }
+        Ok(Self {
+            harmonics: self.harmonics,
+            rows: self.rows,
+            ln: try_copy(&self.ln, CONTEXT)?,
+            slopes: monotone_slopes(&self.ln, &numbers)?,
+            numbers,
+            whole_forces: try_copy(&self.whole_forces, CONTEXT)?,
+            motions: try_copy(&self.motions, CONTEXT)?,
+            is_linear_below: self.is_linear_below,
+            turns: self.turns,
+        })
     }
 
     /// Least and largest modal amplitude of the nodes.
@@ -376,6 +404,7 @@ impl Maker<'_> {
             log10,
             amplitude: state.square.sqrt(),
             numbers,
+            whole_force: state.work / state.square.sqrt(),
             fundamental,
             motions,
         }))

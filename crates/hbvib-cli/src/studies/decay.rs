@@ -2,6 +2,7 @@
 //!
 //! Lines through zero crossings and through logarithms of extremes (Londono, Neild & Cooper 2015, doi:10.1016/j.jsv.2014.12.019). Both are
 //! means of two neighbours, which a mean of the signal does not move. The standard deviations are those of the residuals of these lines.
+//! From the slopes, half a period π/w and −d, follow those of modes, ω₀ = (w² + d²)^½ and ζ = d/ω₀.
 
 use crate::texts::outcome::Outcome;
 use std::f64::consts::PI;
@@ -14,9 +15,9 @@ const LEAST: f64 = 1e-9;
 pub struct Window {
     /// Amplitude of the displacement in the middle of the window.
     pub amplitude: f64,
-    /// Angular frequency and its standard deviation.
+    /// Natural angular frequency ω₀, as modes have it, and its standard deviation.
     pub omega: [f64; 2],
-    /// Damping ratio and its standard deviation.
+    /// Damping ratio ζ and its standard deviation.
     pub damping: [f64; 2],
 }
 
@@ -48,8 +49,10 @@ pub fn windows(time: &[f64], signal: &[f64], (cycles, order): (usize, i32)) -> O
             "component = {order}, needs 0 (displacement), 1 (velocity) or 2 (acceleration)"
         ));
     }
-    if let Some(i) = signal.iter().chain(time).position(|x| !x.is_finite()) {
-        return Err(format!("number {i} of signal and time is not finite"));
+    for (name, values) in [("time", time), ("signal", signal)] {
+        if let Some(i) = values.iter().position(|x| !x.is_finite()) {
+            return Err(format!("{name}[{i}] = {}, needs finite numbers", values[i]));
+        }
     }
     let step = time[1] - time[0];
     let is_even = |pair: &[f64]| ((pair[1] - pair[0]) / step - 1.0).abs() < 1e-3;
@@ -89,17 +92,28 @@ pub fn windows(time: &[f64], signal: &[f64], (cycles, order): (usize, i32)) -> O
             continue;
         }
         let rate = line(&within);
-        let omega = PI / half.slope;
-        found.push(Window {
-            amplitude: rate.height.exp() / omega.powi(order),
-            omega: [omega, (omega * half.deviation / half.slope).max(LEAST * omega)],
-            damping: [-rate.slope / omega, (rate.deviation / omega).max(LEAST)],
-        });
+        found.push(window(&half, &rate, order));
     }
     if found.is_empty() {
         return Err("the signal has too few zero crossings for a window: needs a longer one, or fewer cycles".into());
     }
     Ok(found)
+}
+
+/// Frequency and damping ratio of modes from half a period and the rate of the amplitude's logarithm. Velocity and displacement of
+/// x = exp((−d + iw) t) have the ratio ω₀.
+fn window(half: &Fitted, rate: &Fitted, order: i32) -> Window {
+    let turning = PI / half.slope;
+    let of_turning = turning * half.deviation / half.slope;
+    let omega = turning.hypot(rate.slope);
+    let (cosine, zeta) = (turning / omega, -rate.slope / omega);
+    let sigma = (cosine * of_turning).hypot(zeta * rate.deviation);
+    let of_zeta = cosine / omega * (cosine * rate.deviation).hypot(zeta * of_turning);
+    Window {
+        amplitude: rate.height.exp() / omega.powi(order),
+        omega: [omega, sigma.max(LEAST * omega)],
+        damping: [zeta, of_zeta.max(LEAST)],
+    }
 }
 
 /// Place, in samples, and size of the extreme between two crossings: that of a parabola through the samples around the largest one, a
