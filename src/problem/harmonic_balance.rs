@@ -76,8 +76,9 @@ pub(super) struct ProductMemory {
     /// Numbers of one harmonic, and memory for its product.
     pub harmonic: [Vec<Complex64>; 2],
     pub column: Vec<f64>,
-    /// Stored contact Jacobians.
+    /// Stored contact Jacobians, and the motions that none of them couples back.
     pub kept: Vec<f64>,
+    pub silent: Vec<bool>,
     /// Means over the sectors, where the structure is a whole wheel.
     pub ring: Option<Box<RingBlocks>>,
 }

@@ -3,7 +3,7 @@
 
 #![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
 
-use crate::error::Result;
+use crate::error::{Result, try_push};
 use crate::linalg::add_product;
 use crate::problem::contact_forces::ContactForces;
 use core::ops::Range;
@@ -131,6 +131,18 @@ impl ContactForces<'_> {
     /// `OutOfMemory`.
     pub fn copy_jacobians(&self, values: &mut Vec<f64>) -> Result<()> {
         self.jacobians.copy(values)
+    }
+
+    /// Copies for each motion whether its force is eliminated at the motion evaluated last.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn copy_silent(&self, silent: &mut Vec<bool>) -> Result<()> {
+        silent.clear();
+        for c in 0..self.condensed.coordinates() {
+            try_push(silent, self.is_eliminated(c), "the products with contact forces")?;
+        }
+        Ok(())
     }
 
     /// Exchanges the Jacobians of all laws for those of another motion.
