@@ -193,15 +193,18 @@ impl AdaptivityController {
                     // More harmonics would tell no more, and each later point would pay for them.
                     equations.select(before)?;
                     self.history.note_settled(before);
-                    return done(unchanged.map_or(point, |(fewer, _)| fewer));
+                    let fewer = unchanged.map_or(point, |(fewer, _)| fewer);
+                    self.estimate_again(equations, &fewer)?;
+                    return done(fewer);
                 }
                 Action::Drop(next) => resolve_at(equations, (&point, level), next, keep_parameter, interrupt)?,
                 Action::Raise(next) => refine_to(equations, &point, &found.estimate, next, keep_parameter, interrupt)?,
             };
             let Some(better) = better else {
+                let met = found.error.is_nan() && self.estimate_again(equations, &point)?;
                 return Ok(Refined {
                     point,
-                    stuck: matches!(action, Action::Raise(_)),
+                    stuck: !met && matches!(action, Action::Raise(_)),
                 });
             };
             let before = equations.transfer(&point, level)?;
@@ -230,8 +233,19 @@ impl AdaptivityController {
         Ok(found)
     }
 
-    /// Whether the error of a point is predicted from that of an earlier one; if so, the point takes over that
-    /// estimate.
+    /// Estimates once more the error of a point that is kept although the first estimate left it unknown; whether it meets the tolerance.
+    fn estimate_again(&mut self, equations: &mut dyn Discretised, point: &Point) -> Result<bool> {
+        let Some(found) = equations.estimate_again(point)? else {
+            return Ok(false);
+        };
+        self.count(&found);
+        let required = self.required_harmonics(equations, &found);
+        let accepted = self.accepts(found.error);
+        self.last = accepted.then_some((found.error, required));
+        Ok(accepted)
+    }
+
+    /// Whether the error of a point is predicted by that of an earlier one; it is then taken over.
     fn is_predicted(&mut self, equations: &mut dyn Discretised, point: &Point, trend: Trend) -> Result<bool> {
         self.spacing.note_step(point.step);
         let largest = self.tolerance / ESTIMATE_MARGIN;
@@ -284,6 +298,11 @@ impl AdaptivityController {
         }
         let required = self.required_harmonics(equations, &found);
         let Action::Raise(next) = self.decide_by(equations, Occasion::Beside, &found, required) else {
+            if found.error.is_nan()
+                && let Some(found) = equations.estimate_again(point)?
+            {
+                self.count(&found);
+            }
             return Ok(true);
         };
         equations.select(next)?;

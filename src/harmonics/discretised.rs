@@ -48,6 +48,11 @@ pub(crate) trait Discretised {
     /// Estimates the error of a solved point of the current resolution; `None` unless requested.
     fn estimate(&mut self, point: &Point) -> Result<Option<Assessment>>;
 
+    /// A second, dearer estimate of a point whose error the first one left unknown; `None` where there is none, or it tells nothing.
+    fn estimate_again(&mut self, _point: &Point) -> Result<Option<Assessment>> {
+        Ok(None)
+    }
+
     /// The share of the harmonics above half of the carried ones in the motion of a point, see
     /// [`crate::harmonics::estimate_spacing`].
     fn share_of_highest(&self, point: &Point) -> f64;

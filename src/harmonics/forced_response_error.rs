@@ -16,6 +16,7 @@ use crate::harmonics::jump_error::{OF_HALF, OF_JUMPS};
 use crate::harmonics::kept_changes::KeptChanges;
 use crate::harmonics::kept_ratio::KeptRatio;
 use crate::harmonics::one_extension::{Extent, extend_once};
+use crate::harmonics::second_estimate::SecondEstimate;
 use crate::harmonics::work::{OF_A_POINT, OF_A_START, Sizes, Work};
 use crate::harmonics::{Corrected, Estimate, Solved};
 use crate::interrupt::{Interrupt, Phase};
@@ -80,6 +81,8 @@ pub struct ForcedEstimator<'a> {
     waves: &'a SharedWaves,
     rows: Vec<Arc<ModalRows>>,
     tables: usize,
+    /// Whether the estimate at hand is a second one.
+    second: SecondEstimate,
     /// Range of the frequencies of the points.
     range: Option<Range>,
     /// The requested responses.
@@ -113,6 +116,7 @@ impl<'a> ForcedEstimator<'a> {
             waves,
             rows: Vec::new(),
             tables: 0,
+            second: SecondEstimate::default(),
             range: None,
             responses: &[],
         }
@@ -152,7 +156,8 @@ impl<'a> ForcedEstimator<'a> {
             (true, false) => OF_A_POINT.0,
             (true, true) => OF_A_POINT.1,
         };
-        let mut work = Work::of_point(&sizes, solved.iterations.max(least), self.options.memory_limit);
+        let iterations = self.second.iterations(solved.iterations.max(least));
+        let mut work = Work::of_point(&sizes, iterations, self.options.memory_limit);
         work.limit(core::mem::replace(&mut self.most, f64::INFINITY));
         self.allowed = work.left();
         let found = self.extend(solved, work);
@@ -161,12 +166,41 @@ impl<'a> ForcedEstimator<'a> {
         Ok(found)
     }
 
+    /// A second estimate at a point whose error the first one left unknown: see [`SecondEstimate`]. `None` where none is made: a single
+    /// frequency has taken its share of work.
+    ///
+    /// # Errors
+    /// As [`Self::at`].
+    pub fn again(&mut self, solved: &Solved<'_>) -> Result<Option<Estimate>> {
+        if self.single || !self.second.is_due() {
+            return Ok(None);
+        }
+        self.extended.clear();
+        self.changes = KeptChanges::default();
+        self.ratio = KeptRatio::default();
+        for further in SecondEstimate::ALL {
+            self.second.begin(further);
+            let found = self.at(solved);
+            self.second.end();
+            let found = found?;
+            if found.certified {
+                self.second.note(true);
+                return Ok(Some(found));
+            }
+            if found.too_large {
+                break;
+            }
+        }
+        self.second.note(false);
+        Ok(None)
+    }
+
     /// The harmonics to which a point is extended; `None` where the work does not suffice.
     #[inline(never)]
     fn extent(&mut self, solved: &Solved<'_>, work: &Work) -> Result<Option<Extent>> {
         let set = solved.condensed.set();
         let own = set.numbers().last().copied().unwrap_or(0);
-        let least = cutoff_harmonic::least_extension(set);
+        let least = self.second.least(set, cutoff_harmonic::least_extension(set));
         // How a law of the caller resists the velocity is not known: the cut-off, which counts stiffness alone, may come too early.
         let reach = if self.model.contacts().iter().any(Contact::is_of_caller) {
             cutoff_harmonic::carried_from(set, 2 * least + 1)
@@ -448,7 +482,7 @@ impl<'a> ForcedEstimator<'a> {
         let kept = self.extended.iter().position(|(kept, _)| *kept == slot);
         let stalled = kept.is_some_and(|kept| self.extended[kept].1.stalled);
         // All harmonics of an exchanged motion couple with each other.
-        let couples = stalled || condensed.has_exchanges();
+        let couples = stalled || self.second.is_at_hand() || condensed.has_exchanges();
         let all = if couples { whole(&sizes, &work) } else { None };
         let factored = all.unwrap_or_else(|| factored(&sizes, compliant, &work));
         let packed = sizes.packed().min(2.0 * factored.block as f64);
@@ -472,9 +506,10 @@ impl<'a> ForcedEstimator<'a> {
             let modal = self.modal_tables(condensed, tolerance)?;
             system.problem.set_modes(modal);
         }
-        let (tolerance, interrupt) = (self.options.tol_residual, self.interrupt);
+        let tolerances = [self.options.tol_residual, self.options.tolerance];
+        let interrupt = self.interrupt;
         let run = |system: &mut _, changes: &mut _| {
-            let kept = (changes, tolerance);
+            let kept = (changes, tolerances);
             extend_once(system, condensed, (solved, from), (extent, slot), kept, interrupt)
         };
         let mut found = run(&mut system, &mut self.changes);

@@ -6,7 +6,8 @@
 //! `resolutions` stores the equations at the levels of a run, and `transfer` converts points from one to another.
 //!
 //! `estimate` has the error of a solved point: `forced_response_error` and `mode_error` make it, from solutions of the
-//! `extended_system` up to the `cutoff_harmonic`, within the `work` that a point may take.
+//! `extended_system` up to the `cutoff_harmonic`, within the `work` that a point may take; a `second_estimate` follows where it does not
+//! tell the error.
 
 pub(crate) mod controller;
 pub mod cutoff_harmonic;
@@ -28,6 +29,7 @@ mod mode_doubling;
 pub mod mode_error;
 mod one_extension;
 pub(crate) mod resolutions;
+mod second_estimate;
 pub(crate) mod transfer;
 mod work;
 

@@ -83,9 +83,10 @@ pub(super) struct ProductMemory {
     /// Memory: numbers of one harmonic, and their product.
     pub harmonic: [Vec<Complex64>; 2],
     pub column: Vec<f64>,
-    /// Contact Jacobians of an earlier point.
+    /// Stored contact Jacobians, and the motions that none of them couples back.
     pub kept: Vec<f64>,
-    /// Means of Newton's matrix over the sectors, where the structure is a whole wheel; else `None`.
+    pub silent: Vec<bool>,
+    /// Means over the sectors, where the structure is a whole wheel.
     pub ring: Option<Box<RingBlocks>>,
 }
 

@@ -110,13 +110,26 @@ impl MatrixFree for HarmonicBalance<'_> {
     }
 
     fn keep(&mut self) -> Result<()> {
+        self.forces.copy_silent(&mut self.products.silent)?;
         self.forces.copy_jacobians(&mut self.products.kept)
     }
 
     fn multiply(&mut self, d: &[f64], out: &mut [f64]) -> Result<()> {
         // The contact Jacobians are the stored ones, not those of the motion evaluated last.
         self.forces.swap_jacobians(&mut self.products.kept);
-        self.multiply_current(d, out);
+        for (c, dw) in self
+            .products
+            .change
+            .chunks_exact_mut(self.condensed.set().packed_len())
+            .enumerate()
+        {
+            if self.products.silent.get(c) == Some(&true) {
+                dw.fill(0.0);
+            } else {
+                self.forces.change(d, c, dw);
+            }
+        }
+        self.multiply_change(d, out);
         self.forces.swap_jacobians(&mut self.products.kept);
         Ok(())
     }
@@ -125,14 +138,24 @@ impl MatrixFree for HarmonicBalance<'_> {
 impl HarmonicBalance<'_> {
     /// out ← J d with the contact Jacobians at the point last evaluated.
     pub(super) fn multiply_current(&mut self, d: &[f64], out: &mut [f64]) {
+        for (c, dw) in self
+            .products
+            .change
+            .chunks_exact_mut(self.condensed.set().packed_len())
+            .enumerate()
+        {
+            self.forces.change(d, c, dw);
+        }
+        self.multiply_change(d, out);
+    }
+
+    /// out = d + G w with the change w of the contact forces along d.
+    fn multiply_change(&mut self, d: &[f64], out: &mut [f64]) {
         let set = self.condensed.set();
         let m = set.packed_len();
         let coordinates = self.condensed.coordinates();
-        let dw = &mut self.products.change[..];
+        let dw = &self.products.change[..];
         out.copy_from_slice(d);
-        for (c, dw) in dw.chunks_exact_mut(m).enumerate() {
-            self.forces.change(d, c, dw);
-        }
         let (sum, [z, memory]) = (&mut self.sum[..], &mut self.products.harmonic);
         for (i, table) in self.tables.current().iter().enumerate() {
             let (at, mean) = (set.offset(i), set.numbers()[i] == 0);

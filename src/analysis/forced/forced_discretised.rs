@@ -289,8 +289,8 @@ impl<'a> ForcedDiscretised<'a> {
         Ok(())
     }
 
-    /// Error estimate of the point evaluated last; `None` unless requested.
-    fn estimate_error(&mut self, point: &Point) -> Result<Option<Estimate>> {
+    /// Estimate of the point evaluated last, `again`: the second one.
+    fn estimate_error(&mut self, point: &Point, again: bool) -> Result<Option<Estimate>> {
         let Some(estimator) = &mut self.estimator else {
             return Ok(None);
         };
@@ -314,7 +314,22 @@ impl<'a> ForcedDiscretised<'a> {
             sticks: Some(problem.forces().all_stuck()),
             iterations: self.first_iterations,
         };
+        if again {
+            return estimator.again(&solved);
+        }
         estimator.at(&solved).map(Some)
+    }
+
+    /// Keeps an estimate until its point is recorded.
+    fn keep(&mut self, estimate: Estimate) -> Result<Assessment> {
+        self.estimated = Some(estimate.response);
+        self.last_error = estimate.response;
+        self.last_errors.clear();
+        try_extend(&mut self.last_errors, &estimate.responses, "the responses")?;
+        Ok(Assessment {
+            error: estimate.response,
+            estimate,
+        })
     }
 
     /// The motion of the point evaluated last with more harmonics, where stability needs it and it is certified.
@@ -347,7 +362,7 @@ impl<'a> ForcedDiscretised<'a> {
         if let Some(error) = self.estimated.take() {
             return Ok(error);
         }
-        let found = self.estimate_error(point)?;
+        let found = self.estimate_error(point, false)?;
         self.last_errors.clear();
         let Some(found) = found else { return Ok(f64::NAN) };
         try_extend(&mut self.last_errors, &found.responses, "the responses")?;
@@ -422,17 +437,14 @@ impl Discretised for ForcedDiscretised<'_> {
     fn estimate(&mut self, point: &Point) -> Result<Option<Assessment>> {
         self.estimated = None;
         self.refresh(point)?;
-        let Some(estimate) = self.estimate_error(point)? else {
-            return Ok(None);
-        };
-        self.estimated = Some(estimate.response);
-        self.last_error = estimate.response;
-        self.last_errors.clear();
-        try_extend(&mut self.last_errors, &estimate.responses, "the responses")?;
-        Ok(Some(Assessment {
-            error: estimate.response,
-            estimate,
-        }))
+        let found = self.estimate_error(point, false)?;
+        found.map(|estimate| self.keep(estimate)).transpose()
+    }
+
+    fn estimate_again(&mut self, point: &Point) -> Result<Option<Assessment>> {
+        self.refresh(point)?;
+        let found = self.estimate_error(point, true)?;
+        found.map(|estimate| self.keep(estimate)).transpose()
     }
 
     fn share_of_highest(&self, point: &Point) -> f64 {

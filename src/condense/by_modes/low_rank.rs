@@ -15,7 +15,7 @@ use crate::condense::by_factors::flexibility::Table;
 use crate::condense::by_modes::sum_terms::{Factors, Frequency};
 use crate::error::{Result, boxed, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::dense::complex_products;
+use crate::linalg::dense::{complex_columns, complex_products};
 use crate::linalg::factors::lu::Lu;
 use crate::model::few_motions::reduced_wave::MotionRow;
 use num_complex::Complex64;
@@ -92,7 +92,14 @@ impl Coefficients {
         }
     }
 
-    /// Row of T′ that belongs to row `b` of B: in T′ the response lies between contacts and springs.
+    /// The numbers of the rows of B in a column of T′.
+    fn rows_of(&self, column: &[Complex64], to: &mut [Complex64]) {
+        let (contacts, springs) = to.split_at_mut(self.coordinates);
+        contacts.copy_from_slice(&column[..self.coordinates]);
+        springs.copy_from_slice(&column[self.coordinates + 1..]);
+    }
+
+    /// Row of B number b in T′: the response lies between contacts and springs.
     pub fn row_of(&self, b: usize) -> usize {
         if b < self.coordinates { b } else { b + 1 }
     }
@@ -105,7 +112,13 @@ pub struct LowRank {
     /// X and e X, one column for each contact and for the excitation.
     inner: Vec<Complex64>,
     force: Vec<Complex64>,
-    /// Memory for the slopes of all rows, made when they are first requested.
+    /// e, and the conjugate of the row of the response in T′_B.
+    entries: Vec<Complex64>,
+    response: Vec<Complex64>,
+    /// Memory for the product of that row with the columns.
+    turned: Vec<Complex64>,
+    sums: Vec<Complex64>,
+    /// Made when all slopes are first wanted.
     slopes: Option<Box<AllSlopes>>,
 }
 
@@ -144,6 +157,10 @@ impl LowRank {
             lu: Lu::new(order, coordinates + 1)?,
             inner: columns()?,
             force: columns()?,
+            entries: try_vec(order, Complex64::ZERO, CONTEXT)?,
+            response: try_vec(order, Complex64::ZERO, CONTEXT)?,
+            turned: try_vec(order, Complex64::ZERO, CONTEXT)?,
+            sums: try_vec(coordinates + 1, Complex64::ZERO, CONTEXT)?,
             slopes: None,
         })
     }
@@ -156,6 +173,11 @@ impl LowRank {
     /// e X, column after column, after [`Self::add`].
     pub fn force(&self) -> &[Complex64] {
         &self.force
+    }
+
+    /// The entries of e, after [`Self::add`].
+    pub fn entries(&self) -> &[Complex64] {
+        &self.entries
     }
 
     /// X, column after column, after [`Self::add`].
@@ -185,7 +207,7 @@ impl LowRank {
         }
         self.solve(of, plain, at, 0, interrupt)?;
         self.copy_rows(&self.inner, &mut table.value);
-        self.add_response(of, (plain.value, plain.rows), &self.force, &mut table.value);
+        self.add_response(Force::Own(0), &mut table.value);
         if slopes {
             let mut memory = match self.slopes.take() {
                 Some(made) => made,
@@ -199,7 +221,7 @@ impl LowRank {
             for (to, product) in table.slope.chunks_exact_mut(outputs).zip(made) {
                 to[self.coordinates] += product[self.coordinates];
             }
-            self.add_response(of, (plain.value, plain.rows), &memory.force, &mut table.slope);
+            self.add_response(Force::Of(&memory.force), &mut table.slope);
             self.slopes = Some(memory);
         }
         Ok(())
@@ -224,7 +246,7 @@ impl LowRank {
         self.solve(of, plain, at, self.coordinates, interrupt)?;
         let from = self.coordinates * self.order();
         self.copy_rows(&self.inner[from..], column);
-        self.add_response(of, (plain.value, plain.rows), &self.force[from..], column);
+        self.add_response(Force::Own(from), column);
         Ok(())
     }
 
@@ -238,25 +260,30 @@ impl LowRank {
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         let (order, rows) = (self.order(), plain.rows);
-        for q in 0..order {
-            let (e, from) = (of.entry(q, at.at), of.row_of(q) * rows);
-            for p in 0..order {
-                let entry = -e * plain.value[from + of.row_of(p)];
-                self.lu.matrix()[q * order + p] = if p == q { entry + 1.0 } else { entry };
+        let matrix = self.lu.matrix().chunks_exact_mut(order);
+        for (q, to) in matrix.enumerate() {
+            let e = -of.entry(q, at.at);
+            of.rows_of(&plain.value[of.row_of(q) * rows..][..rows], to);
+            for entry in to.iter_mut() {
+                *entry *= e;
             }
+            to[q] += 1.0;
         }
         self.lu.factor(interrupt)?;
         let columns = plain.value.chunks_exact(rows).take(self.coordinates + 1);
-        for (k, from) in columns.enumerate().skip(first) {
-            for p in 0..order {
-                self.inner[k * order + p] = from[of.row_of(p)];
-            }
+        for (from, to) in columns.zip(self.inner.chunks_exact_mut(order)).skip(first) {
+            of.rows_of(from, to);
         }
         self.lu
             .solve_columns(&mut self.inner[first * order..], false, interrupt)?;
-        for k in first..=self.coordinates {
-            for p in 0..order {
-                self.force[k * order + p] = of.entry(p, at.at) * self.inner[k * order + p];
+        for (b, (e, response)) in self.entries.iter_mut().zip(&mut self.response).enumerate() {
+            *e = of.entry(b, at.at);
+            *response = plain.value[of.row_of(b) * rows + self.coordinates].conj();
+        }
+        let columns = self.force.chunks_exact_mut(order).zip(self.inner.chunks_exact(order));
+        for (force, x) in columns.skip(first) {
+            for ((force, x), e) in force.iter_mut().zip(x).zip(&self.entries) {
+                *force = e * x;
             }
         }
         Ok(())
@@ -312,19 +339,25 @@ impl LowRank {
         }
     }
 
-    /// Adds T′_B x, with the columns T′_B of T′ that belong to B, to the row of the response.
-    fn add_response(
-        &self,
-        of: &Coefficients,
-        (plain, rows): (&[Complex64], usize),
-        x: &[Complex64],
-        table: &mut [Complex64],
-    ) {
-        let (order, outputs) = (self.order(), self.coordinates + 1);
-        for (x, to) in x.chunks_exact(order).zip(table.chunks_exact_mut(outputs)) {
-            for (q, x) in x.iter().enumerate() {
-                to[self.coordinates] += plain[of.row_of(q) * rows + self.coordinates] * x;
-            }
+    /// Adds T′_B x to the row of the response.
+    fn add_response(&mut self, from: Force<'_>, table: &mut [Complex64]) {
+        let x = match from {
+            Force::Own(at) => &self.force[at..],
+            Force::Of(x) => x,
+        };
+        let (coordinates, columns) = (self.coordinates, table.len() / (self.coordinates + 1));
+        let sums = &mut self.sums[..columns];
+        complex_columns::multiply_adjoint(x, &self.response, &mut self.turned, sums);
+        for (sum, to) in sums.iter().zip(table.chunks_exact_mut(coordinates + 1)) {
+            to[coordinates] += sum.conj();
         }
     }
+}
+
+/// Columns x of [`LowRank::add_response`].
+#[derive(Clone, Copy)]
+enum Force<'x> {
+    /// Those of e X from a number on.
+    Own(usize),
+    Of(&'x [Complex64]),
 }

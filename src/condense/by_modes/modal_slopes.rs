@@ -8,7 +8,7 @@
 //! and what `low_rank` keeps of T, that takes products with vectors alone.
 
 use crate::condense::by_modes::modal_table::{ModalTable, ModalWork};
-use crate::linalg::dense::complex_columns::{self, multiply_adjoint};
+use crate::linalg::dense::complex_columns::{self, multiply_adjoint, multiply_adjoint_twice};
 use num_complex::Complex64;
 
 impl ModalTable {
@@ -23,30 +23,30 @@ impl ModalTable {
         let (rows, coordinates) = (self.rows.count(), self.rows.coordinates());
         let (of, order) = (&self.coefficients, self.coefficients.len());
         let [xi, rate] = &mut work.of_modes;
-        let [forces, memory] = &mut work.of_rows;
+        let [forces, memory, by_rate, of_rate] = &mut work.of_rows;
         // Under −w and e X (1, −w) the motions of the modes are ξ = d⁻¹ Rᴴ f.
         forces.fill(Complex64::ZERO);
         for (force, w) in forces.iter_mut().zip(w) {
             *force = -w;
         }
-        let columns = |of: &[Complex64], b: usize| {
-            let by_contacts: Complex64 = w.iter().enumerate().map(|(k, w)| of[k * order + b] * w).sum();
-            of[coordinates * order + b] - by_contacts
-        };
         if of.counts {
-            for b in 0..order {
-                forces[of.row_of(b)] += columns(work.low_rank.force(), b);
+            // ∂ξ = d⁻¹ (∂f + R_Bᴴ ∂e X (1, −w) − ∂d ξ) without the change of the springs' forces by ∂ξ itself.
+            let weights = &mut work.of_columns[..=coordinates];
+            weights[..coordinates].copy_from_slice(&forces[..coordinates]);
+            weights[coordinates] = Complex64::ONE;
+            // Without w the columns of the contacts may be those of an earlier frequency.
+            let first = if w.is_empty() { coordinates } else { 0 };
+            let (inner, moved) = (&work.low_rank.inner()[first * order..], &mut work.of_springs[..]);
+            complex_columns::multiply(inner, order, &weights[first..], moved, &mut memory[..order]);
+            by_rate.fill(Complex64::ZERO);
+            for (b, (x, e)) in moved.iter().zip(work.low_rank.entries()).enumerate() {
+                forces[of.row_of(b)] += e * x;
+                by_rate[of.row_of(b)] = of.d_entry(b, frequency.slope) * x;
             }
-        }
-        multiply_adjoint(self.rows.adjoint(), forces, memory, xi);
-        // ∂ξ = d⁻¹ (∂f + R_Bᴴ ∂e X (1, −w) − ∂d ξ) without the change of the springs' forces by ∂ξ itself.
-        rate.fill(Complex64::ZERO);
-        if of.counts {
-            forces.fill(Complex64::ZERO);
-            for b in 0..order {
-                forces[of.row_of(b)] = of.d_entry(b, frequency.slope) * columns(work.low_rank.inner(), b);
-            }
-            multiply_adjoint(self.rows.adjoint(), forces, memory, rate);
+            multiply_adjoint_twice(self.rows.adjoint(), [forces, by_rate], [memory, of_rate], [xi, rate]);
+        } else {
+            rate.fill(Complex64::ZERO);
+            multiply_adjoint(self.rows.adjoint(), forces, memory, xi);
         }
         for (k, ((rate, xi), inverse)) in rate.iter_mut().zip(xi.iter()).zip(&work.inverse).enumerate() {
             let [force, d_force] = self.excitation(k, omega);
@@ -65,7 +65,7 @@ impl ModalTable {
         change[..coordinates].copy_from_slice(&work.of_springs[..coordinates]);
         let mut response = forces[coordinates];
         for (b, z) in work.of_springs.iter().enumerate() {
-            response += work.plain[of.row_of(b) * rows + coordinates] * of.entry(b, frequency.at) * z;
+            response += work.plain[of.row_of(b) * rows + coordinates] * work.low_rank.entries()[b] * z;
         }
         change[coordinates] = response;
     }

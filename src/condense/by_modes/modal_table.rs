@@ -65,8 +65,10 @@ pub(crate) struct Work {
     pub low_rank: LowRank,
     /// Memory: one number per mode, per row, and per row of B.
     pub of_modes: [Vec<Complex64>; 2],
-    pub of_rows: [Vec<Complex64>; 2],
+    pub of_rows: [Vec<Complex64>; 4],
     pub of_springs: Vec<Complex64>,
+    /// Numbers of the columns of contacts and excitation.
+    pub of_columns: Vec<Complex64>,
 }
 
 impl ModalWork {
@@ -91,8 +93,9 @@ impl Work {
             d_plain: Vec::new(),
             low_rank: LowRank::new(table.rows.coordinates(), table.coefficients.len())?,
             of_modes: [zeros(n)?, zeros(n)?],
-            of_rows: [zeros(rows)?, zeros(rows)?],
+            of_rows: [zeros(rows)?, zeros(rows)?, zeros(rows)?, zeros(rows)?],
             of_springs: zeros(table.coefficients.len())?,
+            of_columns: zeros(table.rows.coordinates() + 1)?,
         })
     }
 

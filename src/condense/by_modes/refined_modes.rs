@@ -13,6 +13,7 @@ use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::complex_products;
 use crate::linalg::dense::eigen::{self, Pairs};
+use crate::linalg::dot;
 use crate::linalg::exact_sums::quadratic::{self, ComplexSum, terms_of_moduli};
 use crate::linalg::libraries::{Accum, DMatrix, MatMut, MatRef, Par, matmul};
 use crate::linalg::sparse_storage::sparse::Csc;
@@ -240,16 +241,15 @@ fn strain_soft_exactly<T: Entry>(
 ) -> Result<()> {
     let n = stiffness.rows;
     let mut sums = try_vec(n, ComplexSum::default(), CONTEXT)?;
-    let (sizes, mut size) = (moduli(&stiffness.values)?, try_vec(n, 0.0, CONTEXT)?);
     let mut whole = try_vec(n, Complex64::ZERO, CONTEXT)?;
-    for (x, strained) in x.chunks_exact(n).zip(strained.chunks_exact_mut(n)) {
-        interrupt.check_before(20 * stiffness.values.len() as u64)?;
-        for ((to, size), x) in whole.iter_mut().zip(&mut size).zip(x) {
-            *to = x.complex();
-            *size = modulus(to);
-        }
+    let terms = terms_of_all(stiffness, x, interrupt)?;
+    for ((x, strained), terms) in x.chunks_exact(n).zip(strained.chunks_exact_mut(n)).zip(terms) {
         // φᴴ K φ is 1.
-        if terms_of_moduli(stiffness, &sizes, &size) > SOFT_TERMS {
+        if terms > SOFT_TERMS {
+            interrupt.check_before(20 * stiffness.values.len() as u64)?;
+            for (to, x) in whole.iter_mut().zip(x) {
+                *to = x.complex();
+            }
             sums.fill(ComplexSum::default());
             quadratic::product(stiffness, &stiffness.values, &whole, &mut sums);
             for (to, sum) in strained.iter_mut().zip(&sums) {
@@ -260,7 +260,44 @@ fn strain_soft_exactly<T: Entry>(
     Ok(())
 }
 
-/// |z| by a plain square root: the square of |z| must be in the range of numbers.
+/// The sum of the moduli of the terms of φᴴ K φ for each motion; by blocks where most entries are there.
+fn terms_of_all<T: Entry>(stiffness: &Csc, x: &[T], interrupt: &Interrupt<'_>) -> Result<Vec<f64>> {
+    let n = stiffness.rows;
+    let sizes = moduli(&stiffness.values)?;
+    let mut found = try_vec(n, 0.0, CONTEXT)?;
+    if n <= COMPLEX_UP_TO || MANY_ENTRIES * sizes.len() <= n * n {
+        let mut size = try_vec(n, 0.0, CONTEXT)?;
+        for (found, x) in found.iter_mut().zip(x.chunks_exact(n)) {
+            interrupt.check_before(2 * sizes.len() as u64)?;
+            for (to, x) in size.iter_mut().zip(x) {
+                *to = modulus(&x.complex());
+            }
+            *found = terms_of_moduli(stiffness, &sizes, &size);
+        }
+        return Ok(found);
+    }
+    let mut of_motions = try_vec(n * n, 0.0, CONTEXT)?;
+    for (to, x) in of_motions.iter_mut().zip(x) {
+        *to = modulus(&x.complex());
+    }
+    interrupt.check_before(2 * (n * n * n) as u64)?;
+    let (mut of_stiffness, mut sums) = (try_vec(n * n, 0.0, CONTEXT)?, try_vec(n * n, 0.0, CONTEXT)?);
+    for j in 0..n {
+        for at in stiffness.col_ptr[j]..stiffness.col_ptr[j + 1] {
+            of_stiffness[j * n + stiffness.row_idx[at]] = sizes[at];
+        }
+    }
+    real_product(square(&of_stiffness, n), square(&of_motions, n), &mut sums);
+    for (found, (size, sum)) in found
+        .iter_mut()
+        .zip(of_motions.chunks_exact(n).zip(sums.chunks_exact(n)))
+    {
+        *found = dot(size, sum);
+    }
+    Ok(found)
+}
+
+/// |z|, without care for numbers whose square is out of range.
 fn modulus(z: &Complex64) -> f64 {
     z.norm_sqr().sqrt()
 }

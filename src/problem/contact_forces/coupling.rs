@@ -3,7 +3,7 @@
 
 #![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
 
-use crate::error::Result;
+use crate::error::{Result, try_push};
 use crate::linalg::add_product;
 use crate::linalg::libraries::{Simd, WithSimd};
 use crate::problem::contact_forces::ContactForces;
@@ -135,7 +135,19 @@ impl ContactForces<'_> {
         self.jacobians.copy(values)
     }
 
-    /// Exchanges the Jacobians of all laws for stored ones of another motion.
+    /// Copies for each motion whether its force is eliminated at the motion evaluated last.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn copy_silent(&self, silent: &mut Vec<bool>) -> Result<()> {
+        silent.clear();
+        for c in 0..self.condensed.coordinates() {
+            try_push(silent, self.is_eliminated(c), "the products with contact forces")?;
+        }
+        Ok(())
+    }
+
+    /// Exchanges the Jacobians of all laws for those of another motion.
     pub fn swap_jacobians(&mut self, values: &mut Vec<f64>) {
         self.jacobians.swap(values);
     }

@@ -46,6 +46,8 @@ struct Kept {
     by_omega: Vec<f64>,
     by_damping: Vec<f64>,
     rows: [Vec<f64>; 2],
+    /// Motions that no contact couples back.
+    silent: Vec<bool>,
 }
 
 impl PackedHarmonics for Epmc<'_> {
@@ -128,6 +130,7 @@ impl MatrixFree for Epmc<'_> {
         self.make_products()?;
         self.fill_rows();
         let kept = &mut self.products.kept;
+        self.forces.copy_silent(&mut kept.silent)?;
         self.forces.copy_jacobians(&mut kept.jacobians)?;
         for (to, from) in kept.tables.iter_mut().zip(&self.tables) {
             to.copy_from_slice(from);
@@ -171,6 +174,7 @@ impl Epmc<'_> {
                 by_omega: zeros(unknowns + BEHIND)?,
                 by_damping: zeros(unknowns + BEHIND)?,
                 rows: [zeros(unknowns)?, zeros(unknowns)?],
+                silent: Vec::new(),
             },
         };
         Ok(())
@@ -204,11 +208,19 @@ impl Epmc<'_> {
         let n = self.size();
         let (motion, [along_omega, along_damping]) = (&d[..n - BEHIND], [d[n - 2], d[n - 1]]);
         let ModeProducts {
-            change, harmonic, rows, ..
+            change,
+            harmonic,
+            rows,
+            kept,
+            ..
         } = &mut *self.products;
         let [z, sum, memory] = harmonic;
         for (c, dw) in change.chunks_exact_mut(m).enumerate() {
-            self.forces.change(motion, c, dw);
+            if kept.silent.get(c) == Some(&true) {
+                dw.fill(0.0);
+            } else {
+                self.forces.change(motion, c, dw);
+            }
         }
         out[..n - BEHIND].copy_from_slice(motion);
         for (to, row) in out[n - BEHIND..].iter_mut().zip(rows) {

@@ -49,6 +49,10 @@ impl WithSimd for Product<'_> {
         let column = |j: usize| &self.columns[j * self.stride..][..rows];
         let mut pairs = self.z.chunks_exact(2);
         for (k, z) in pairs.by_ref().enumerate() {
+            // Contacts that stick change no force.
+            if z[0] == Complex64::ZERO && z[1] == Complex64::ZERO {
+                continue;
+            }
             let numbers = column(2 * k).iter().zip(column(2 * k + 1));
             for ((a, b), (p, q)) in out.iter_mut().zip(&mut *by_im).zip(numbers) {
                 *a += p * z[0].re + q * z[1].re;
@@ -116,6 +120,73 @@ impl WithSimd for Adjoint<'_> {
     }
 }
 
+/// The same for two vectors at once: the columns of a large matrix are read once.
+pub fn multiply_adjoint_twice(
+    columns: &[Complex64],
+    forces: [&[Complex64]; 2],
+    mut turned: [&mut [Complex64]; 2],
+    [first, second]: [&mut [Complex64]; 2],
+) {
+    for (turned, force) in turned.iter_mut().zip(forces) {
+        for (to, f) in turned.iter_mut().zip(force) {
+            *to = Complex64::new(f.im, -f.re);
+        }
+    }
+    let [of_first, of_second] = turned;
+    Arch::new().dispatch(TwoAdjoints {
+        columns,
+        forces,
+        turned: [&of_first[..forces[0].len()], &of_second[..forces[0].len()]],
+        out: (first, second),
+    });
+}
+
+/// The numbers of a vector, as many at a time as are added, and those left.
+#[inline(always)]
+fn lanes(of: &[Complex64]) -> (&[[f64; LANES]], &[f64]) {
+    cast_slice::<Complex64, f64>(of).as_chunks::<LANES>()
+}
+
+struct TwoAdjoints<'a> {
+    columns: &'a [Complex64],
+    forces: [&'a [Complex64]; 2],
+    turned: [&'a [Complex64]; 2],
+    out: (&'a mut [Complex64], &'a mut [Complex64]),
+}
+
+impl WithSimd for TwoAdjoints<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        let length = self.forces[0].len().max(1);
+        let ([f, g], [t, u]) = (self.forces.map(lanes), self.turned.map(lanes));
+        let outputs = self.out.0.iter_mut().zip(self.out.1.iter_mut());
+        for ((first, second), column) in outputs.zip(self.columns.chunks_exact(length)) {
+            let column = cast_slice::<Complex64, f64>(column).as_chunks::<LANES>();
+            let mut sums = [[0.0; LANES]; 4];
+            let numbers = f.0.iter().zip(t.0).zip(g.0.iter().zip(u.0));
+            for (a, ((f, t), (g, u))) in column.0.iter().zip(numbers) {
+                for k in 0..LANES {
+                    sums[0][k] += a[k] * f[k];
+                    sums[1][k] += a[k] * t[k];
+                    sums[2][k] += a[k] * g[k];
+                    sums[3][k] += a[k] * u[k];
+                }
+            }
+            let mut whole = sums.map(|sum| sum.iter().sum::<f64>());
+            let numbers = f.1.iter().zip(t.1).zip(g.1.iter().zip(u.1));
+            for (a, ((f, t), (g, u))) in column.1.iter().zip(numbers) {
+                for (sum, by) in whole.iter_mut().zip([f, t, g, u]) {
+                    *sum += a * by;
+                }
+            }
+            *first = Complex64::new(whole[0], whole[1]);
+            *second = Complex64::new(whole[2], whole[3]);
+        }
+    }
+}
+
 /// A ← A − v wᴴ − w vᴴ for columns that begin `stride` apart and are as long as v; the last one ends with the matrix.
 pub fn subtract_dyads(columns: &mut [Complex64], stride: usize, v: &[Complex64], w: &[Complex64]) {
     Arch::new().dispatch(Dyads { columns, stride, v, w });
@@ -145,7 +216,7 @@ impl WithSimd for Dyads<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::{multiply, multiply_adjoint, subtract_dyads};
+    use super::{multiply, multiply_adjoint, multiply_adjoint_twice, subtract_dyads};
     use num_complex::Complex64;
 
     #[test]
@@ -180,6 +251,31 @@ mod tests {
                 assert!(
                     (out - exact).norm() < 1e-14 * rows as f64,
                     "{rows}, {count}: {out} {exact}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn products_with_two_vectors_are_those_with_each() {
+        let number = |k: usize| Complex64::new((k as f64).sin(), (1.7 * k as f64).cos());
+        for (rows, count) in [(1, 1), (4, 5), (17, 9), (91, 61)] {
+            let a: Vec<Complex64> = (0..rows * count).map(number).collect();
+            let forces = [1, 2].map(|s| (0..rows).map(|k| number(3 * k + s)).collect::<Vec<_>>());
+            let (mut turned, mut out) = (
+                [(); 2].map(|()| vec![Complex64::ZERO; rows]),
+                vec![Complex64::ZERO; count],
+            );
+            let mut both = [(); 2].map(|()| vec![Complex64::ZERO; count]);
+            let ([t, u], [x, y]) = (&mut turned, &mut both);
+            multiply_adjoint_twice(&a, [&forces[0], &forces[1]], [t, u], [x, y]);
+            for (force, found) in forces.iter().zip(&both) {
+                multiply_adjoint(&a, force, &mut turned[0], &mut out);
+                assert!(
+                    found
+                        .iter()
+                        .zip(&out)
+                        .all(|(a, b)| (a - b).norm() < 1e-14 * rows as f64)
                 );
             }
         }
