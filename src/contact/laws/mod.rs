@@ -9,6 +9,7 @@ pub mod polynomial;
 pub mod registry;
 pub mod regularised;
 pub mod saturated;
+pub mod sliding_mass;
 pub mod table;
 pub mod unilateral;
 pub mod user_law;
