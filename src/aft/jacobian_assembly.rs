@@ -106,6 +106,33 @@ impl Assembly {
         Ok(())
     }
 
+    /// Adds a change of the force of a packed spectrum `g` by the product of the motion with a row; the force itself has none.
+    pub(super) fn add_change(
+        &mut self,
+        (motion, row): (&[f64], &[f64]),
+        fill: impl FnOnce(&mut [f64]),
+        out: &mut Evaluation,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        if out.is_force_alone() {
+            return Ok(());
+        }
+        if self.pending == MOST_PENDING {
+            self.flush(out, interrupt)?;
+        }
+        let m = row.len();
+        let own = self.pending * m..(self.pending + 1) * m;
+        let g = &mut self.g[own.clone()];
+        fill(g);
+        let by_motion: f64 = row.iter().zip(motion).map(|(a, b)| a * b).sum();
+        for (o, g) in out.offset.iter_mut().zip(&*g) {
+            *o -= by_motion * g;
+        }
+        self.anchors[own].copy_from_slice(row);
+        self.pending += 1;
+        Ok(())
+    }
+
     /// Adds the pending products to the Jacobian.
     fn flush(&mut self, out: &mut Evaluation, interrupt: &Interrupt<'_>) -> Result<()> {
         let m = out.force.len().max(1);

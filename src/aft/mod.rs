@@ -19,6 +19,7 @@ mod hysteretic_derivatives;
 mod jacobian_assembly;
 mod jacobian_block;
 pub mod memoryless;
+mod moved_ends;
 mod normal_force;
 mod periodic_state;
 pub mod piecewise_exact;

@@ -6,6 +6,7 @@
 
 use crate::aft::evaluation::Evaluation;
 use crate::aft::jacobian_assembly::Assembly;
+use crate::aft::moved_ends::MovedEnds;
 use crate::contact::law::PiecewiseLinear;
 use crate::contact::piece::Piece;
 use crate::error::{Error, Result, try_vec};
@@ -23,6 +24,7 @@ pub struct Exact {
     pieces: Vec<Piece>,
     transform: Vec<Complex64>,
     assembly: Assembly,
+    ends: MovedEnds,
 }
 
 impl Exact {
@@ -46,6 +48,7 @@ impl Exact {
             pieces,
             transform: try_vec(2 * highest + 1, Complex64::ZERO, "a transform")?,
             assembly,
+            ends: MovedEnds::new(set)?,
         })
     }
 
@@ -95,6 +98,7 @@ impl Exact {
         law.pieces(set, motion, &self.extrema, &mut self.pieces, interrupt)?;
         self.assembly.start(out);
         let turn = TAU / set.stride() as f64;
+        let ends = law.sliding_ends();
         for piece in &self.pieces {
             interrupt.check()?;
             // A piece without stiffness has no part in its spectrum, whose numbers go twice as far as those of the motion.
@@ -110,10 +114,15 @@ impl Exact {
                 (set, motion),
                 (piece, state),
                 &self.transform,
-                piece.anchor,
+                piece.anchor.filter(|_| ends.is_none()),
                 out,
                 interrupt,
             )?;
+        }
+        if let Some(ends) = ends {
+            let pieces = (&self.pieces[..], ends);
+            self.ends
+                .add((set, motion), pieces, &mut self.assembly, out, interrupt)?;
         }
         interrupt.check()?;
         self.assembly.finish(set, motion, out, interrupt)

@@ -363,7 +363,11 @@ impl Condensed {
             }
             let contact = one[0].contact;
             let exchange = self.exchanges[one[0].coordinate];
-            let exchanged = exchange.and_then(|e| model.contacts()[contact].exchanged(e.stiffness, length));
+            let base = self.set.base() as f64;
+            let exchanged = exchange.and_then(|e| {
+                let late = e.mass_at.map(|omega| base * omega / e.ring);
+                model.contacts()[contact].exchanged((e.stiffness, late), length)
+            });
             let assembled = AssembledLaw {
                 coordinates,
                 contact,

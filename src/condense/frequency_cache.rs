@@ -254,7 +254,7 @@ impl FrequencyCache {
         {
             if condensed.has_exchanges() {
                 for (i, table) in self.current.iter_mut().enumerate() {
-                    condensed.exchange(i, table);
+                    condensed.exchange(i, omega, table);
                 }
             }
             self.tabulated = Some((omega, self.way, true));
@@ -275,7 +275,7 @@ impl FrequencyCache {
                 && modal.evaluate((omega, of_modes), work, table, interrupt)?
             {
                 (self.lacks_slopes[i], self.is_modal[i]) = (keeps, true);
-                condensed.exchange(i, table);
+                condensed.exchange(i, omega, table);
                 continue;
             }
             interrupt.check()?;
@@ -292,7 +292,7 @@ impl FrequencyCache {
             let found = workspace.tabulate(condensed, (i, omega), slopes, interrupt)?;
             table.value.copy_from_slice(&found.value);
             table.slope.copy_from_slice(&found.slope);
-            condensed.exchange(i, table);
+            condensed.exchange(i, omega, table);
             self.constant[i] = block.number == 0 && block.tied.is_none();
         }
         self.tabulated = Some((omega, self.way, true));

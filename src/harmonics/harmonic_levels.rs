@@ -136,7 +136,7 @@ impl<'m> HarmonicLevels<'m> {
         let Some(known) = self.models.any() else {
             return self.count() - 1;
         };
-        let most = affordable(&known.condensed, MOST_UNKNOWNS);
+        let most = affordable(&known.condensed, MOST_UNKNOWNS).min(known.condensed.highest_below_rings());
         let fits = |n| is_allowed(self.memory_limit, &known.condensed, n, self.samples_up_to(n));
         let below = self.models.numbers().take_while(|&n| n <= most && fits(n)).count();
         below.max(1) - 1

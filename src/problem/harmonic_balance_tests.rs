@@ -89,7 +89,7 @@ fn factors_by_terms_solve_newtons_matrix_of_a_slider_with_many_harmonics() {
         ..SolverOptions::default()
     };
     let condensed = Condensed::new(&model, &options, (0.3, 2.0), &interrupt).unwrap();
-    let mut problem = HarmonicBalance::new(&condensed, 8, (0.3, 2.0), 0, None, &interrupt).unwrap();
+    let mut problem = HarmonicBalance::new(&condensed, 8, (0.3, 2.0).into(), 0, None, &interrupt).unwrap();
     let n = problem.unknowns();
     assert_eq!(n, 96);
     let mut system = DenseSystem::new(n).unwrap();
@@ -152,4 +152,56 @@ fn factors_by_terms_solve_newtons_matrix_of_a_slider_with_many_harmonics() {
         }
     }
     assert!(near > 8 && far > 4, "{near} near, {far} far");
+}
+
+/// The equations of exchanged motions with a mass: of a stick and a slip, of slip that reverses, and with forces that are late.
+#[test]
+fn derivatives_of_sliding_masses_are_differences() {
+    let interrupt = Interrupt::none();
+    let (range, omega) = ((1.0, 2.0).into(), 1.37);
+    let mut shares = Vec::new();
+    for kt in [f64::INFINITY, 4e6] {
+        let mut model = chain(0);
+        model.add_contact(&Contact::jenkins(2, None, kt, 0.3, 0.5)).unwrap();
+        let options = SolverOptions {
+            harmonics: 9,
+            exchange: crate::options::Exchanged::NearRigid,
+            ..SolverOptions::default()
+        };
+        let condensed = Condensed::new(&model, &options, range, &interrupt).unwrap();
+        let exchange = condensed.exchange_of(0).unwrap();
+        assert!(exchange.mass_at.is_some());
+        let at_limit = 0.15 / exchange.stiffness / condensed.length();
+        let mut problem = HarmonicBalance::new(&condensed, 88, range, 0, None, &interrupt).unwrap();
+        let n = problem.unknowns();
+        for size in [1.3, 2.0, 5.0, 20.0] {
+            let fall = |i: usize| (0.6 + 0.37 * (i * 13) as f64).sin() / (1.0 + (i / 2) as f64).powi(2);
+            let u: Vec<f64> = (0..n).map(|i| size * at_limit * fall(i)).collect();
+            let mut out = Residual::new(n).unwrap();
+            let (mut filled, mut active) = (vec![0.0; n * n], vec![true; n]);
+            problem.evaluate(&u, omega, &mut out).unwrap();
+            problem.fill(&mut filled, &mut active).unwrap();
+            shares.push(problem.slip_fractions()[0]);
+            let largest = filled.iter().fold(0.0_f64, |m, d| m.max(d.abs()));
+            let step = 1e-6 * at_limit;
+            for j in 0..n {
+                let mut at = |step: f64| {
+                    let mut moved = u.clone();
+                    moved[j] += step;
+                    problem.evaluate(&moved, omega, &mut out).unwrap();
+                    out.values.clone()
+                };
+                let [below, above] = [-step, step].map(&mut at);
+                for i in 0..n {
+                    let (found, difference) = (filled[j * n + i], (above[i] - below[i]) / (2.0 * step));
+                    assert!(
+                        (found - difference).abs() < 1e-5 * largest,
+                        "{kt:e}, {size}, {i}, {j}: {found} for {difference}"
+                    );
+                }
+            }
+        }
+    }
+    assert!(shares.iter().any(|s| *s > 0.05 && *s < 0.95), "{shares:?}");
+    assert!(shares.iter().any(|s| *s > 0.999), "{shares:?}");
 }

@@ -108,8 +108,30 @@ fn energies_and_loops_are_those_of_the_motion_of_the_contact() {
     assert!((largest / summary.half_range[0] - 1.0).abs() < 0.01);
 }
 
+/// Sweeps over both resonances end within few points and harmonics, and have the motion that an integration in time has.
+#[test]
+fn sweeps_over_resonances_with_slip_take_few_harmonics() {
+    for kt in [2e6, 4e8, f64::INFINITY] {
+        for (start, stop) in [(0.5, 0.75), (1.05, 1.3)] {
+            let inside: Vec<_> = IN_TIME.iter().filter(|row| row.0 > start && row.0 < stop).collect();
+            let requested: Vec<f64> = inside.iter().map(|row| row.0).collect();
+            let branch = sweep(&chain(kt), &solver(), start, stop, &requested);
+            let name = format!("{kt:e} from {start}");
+            assert_eq!(branch.status(), Status::Ok, "{name}");
+            assert!(branch.harmonics() <= 63 && branch.points() < 200, "{name}");
+            for (i, row) in inside.into_iter().enumerate() {
+                let point = branch.at(i)[0].point;
+                let exact = Complex64::new(row.2[0], row.2[1]);
+                let error = (fundamental(&branch, point) - exact).norm() / exact.norm();
+                assert!(error <= 1e-3, "{name}, {}: {error:e}", row.0);
+            }
+        }
+    }
+}
+
 /// A mass on a spring 1 under the force cos ωt with rigid friction that slips without a stop: Den Hartog, Trans. ASME APM-53-9 (1931),
-/// has its largest motion √(V² − (fc U)²), V = 1/(1 − r²), U = sin(π/r)/(r(1 + cos(π/r))) with r = ω. The error falls as 1/H.
+/// has its largest motion √(V² − (fc U)²), V = 1/(1 − r²), U = sin(π/r)/(r(1 + cos(π/r))) with r = ω. The harmonics of the
+/// motion fall as H⁻³, and those that are left out sum up to H⁻² where slip reverses.
 #[test]
 fn a_mass_on_a_rigid_slider_moves_as_in_closed_form() {
     let limit = 0.3;
@@ -134,7 +156,7 @@ fn a_mass_on_a_rigid_slider_moves_as_in_closed_form() {
             let largest = (0..6284).map(at).fold(0.0, f64::max);
             let error = (largest / exact - 1.0).abs();
             println!("{r}, H {highest}: {error:.1e}");
-            assert!(error <= 0.08 / highest as f64, "{r}, {highest}: {error:e}");
+            assert!(error <= 0.3 / (highest as f64).powi(2), "{r}, {highest}: {error:e}");
         }
     }
 }

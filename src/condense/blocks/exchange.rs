@@ -16,6 +16,20 @@
 //! H⁻¹. Cut off at H, x acts as a damper α/ω on the harmonics above: nothing rings, and the equations have one solution at
 //! any H, since the law and a structure that is passive are both monotone.
 //!
+//! ## With a mass
+//!
+//! Where the structure has a mass m at the contact, seen by harmonics from H on, and motions have odd harmonics alone, the force on this
+//! mass is a better unknown. With the place w = y − f/k of the slider and α = m ω₀²
+//!
+//! > α x = f + m ω² d²w/dτ²,
+//!
+//! so that the same equation holds with s = (ω/ω₀)² (ih)². The law is a mass that slides under the force α x, which is integrated from
+//! event to event ([`crate::contact::laws::sliding_mass`]): it has all harmonics of the jumps of f. In x there is left what the
+//! structure is besides that mass: with G_h → −1/(m h²ω²) it falls as h⁻³, where the rate falls as h⁻¹. The equations are exact for any
+//! m; another one makes x fall slower.
+//!
+//! ## The mean
+//!
 //! The mean has s = 10⁻⁶ instead of 0: a slider that slips has lost its mean place, and one that never slipped keeps it.
 //!
 //! α only moves the truncation error. It is the geometric mean of 1/(h|G_h|) over a nominal number of harmonics of a mass that
@@ -36,20 +50,26 @@ pub struct Exchange {
     pub(crate) compliance: f64,
     /// Angular frequency √(k/m) at which the stick stiffness k rings with the mass m of the structure at the contact.
     pub ring: f64,
+    /// ω₀, where the exchanged motion is the force on a mass α/ω₀²; `None`: it is a rate.
+    pub mass_at: Option<f64>,
 }
 
 impl Exchange {
-    /// Factor s of the derivative d/dτ in harmonic `number`.
-    pub(crate) fn rate(number: usize) -> Complex64 {
-        if number == 0 {
-            CREEP.into()
-        } else {
-            Complex64::new(0.0, number as f64)
+    /// s of a harmonic at an angular frequency, and its derivative by that.
+    pub(crate) fn rate(&self, number: usize, omega: f64) -> (Complex64, Complex64) {
+        let h = number as f64;
+        match self.mass_at {
+            Some(at) => {
+                let s = -(h * omega / at).powi(2);
+                (s.into(), (2.0 * s / omega).into())
+            }
+            None if number == 0 => (CREEP.into(), Complex64::ZERO),
+            None => (Complex64::new(0.0, h), Complex64::ZERO),
         }
     }
 
-    /// The motion y of the contact in harmonic `number`, from the exchanged motion x and the force f.
-    pub(crate) fn motion(&self, number: usize, x: Complex64, f: Complex64) -> Complex64 {
-        (x - f / self.stiffness) / Self::rate(number) + f * self.compliance
+    /// The motion y in a harmonic, where the exchanged one is x and the force f.
+    pub(crate) fn motion(&self, (number, omega): (usize, f64), x: Complex64, f: Complex64) -> Complex64 {
+        (x - f / self.stiffness) / self.rate(number, omega).0 + f * self.compliance
     }
 }

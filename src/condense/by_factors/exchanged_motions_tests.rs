@@ -55,7 +55,7 @@ fn exchanged_motions_are_those_of_the_structure() {
             }
             set.set(&mut x[own * m..(own + 1) * m], i, z);
         }
-        let y = exchanged.relative_motion(&x, &forces).unwrap();
+        let y = exchanged.relative_motion(&x, &forces, 0.7).unwrap();
         for i in 0..set.numbers().len() {
             // Without exchange y = y_lin − G (f − κ y): both rows solved, with κ of the contact alone.
             let table = &of_plain.current()[i].value;

@@ -189,10 +189,10 @@ impl Contact {
         self.ask(|law| law.law(length))
     }
 
-    /// The same force over the exchanged motion with its stiffness; `None` where the law has none.
+    /// The same force over the exchanged motion with its stiffness, that of a mass or of a rate; `None` where the law has none.
     #[doc(hidden)]
-    pub(crate) fn exchanged(&self, stiffness: f64, length: f64) -> Option<Arc<dyn Law>> {
-        self.ask(|law| law.exchanged(stiffness, length))
+    pub(crate) fn exchanged(&self, by: (f64, Option<f64>), length: f64) -> Option<Arc<dyn Law>> {
+        self.ask(|law| law.exchanged(by, length))
     }
 
     /// The law of an active contact in an integration in time, in the caller's units.

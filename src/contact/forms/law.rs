@@ -125,9 +125,10 @@ pub trait ContactLaw {
     fn law(&self, length: f64) -> Result<Arc<dyn Law>>;
 
     /// The same force over the exchanged motion of [`crate::condense::blocks::exchange`] with its stiffness; `None` where the law is
-    /// no slider under a constant load.
-    fn exchanged(&self, stiffness: f64, length: f64) -> Option<Arc<dyn Law>> {
-        let _ = (stiffness, length);
+    /// no slider under a constant load. `late`: over the force on the mass at the contact, where the
+    /// stick rings at the harmonic 1/`late`; else over the rate.
+    fn exchanged(&self, (stiffness, late): (f64, Option<f64>), length: f64) -> Option<Arc<dyn Law>> {
+        let _ = (stiffness, late, length);
         None
     }
 
@@ -213,9 +214,24 @@ pub trait PiecewiseLinear {
     /// State of the contact on a piece of it.
     fn state(&self, piece: &Piece) -> State;
 
+    /// The ends of slips that move with the motion, see [`SlidingEnds`]; `None` for a law whose force is continuous.
+    fn sliding_ends(&self) -> Option<&dyn SlidingEnds> {
+        None
+    }
+
     /// Force and state at the motion x of a law without memory; `None` for one with memory, whose
     /// force follows from its pieces.
     fn at(&self, x: f64) -> Option<(f64, State)>;
+}
+
+/// A slider whose slips end where the momentum ∫ (x − f/α) dτ from their begin on is used up. Where slip reverses, the anchor of the
+/// piece is the time at which that is so, and its end that at which the force follows, after a delay.
+pub trait SlidingEnds {
+    /// α
+    fn stiffness(&self) -> f64;
+
+    /// Delay of the force where a slip ends with the motion −r times that at which slip begins, and its derivative by r.
+    fn delay(&self, r: f64) -> [f64; 2];
 }
 
 /// A law without events on one relative motion: linear·x plus a term that is homogeneous in x, f(s·x) =

@@ -14,6 +14,7 @@ use crate::contact::force_derivative::{Combination, ForceDerivative};
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, PiecewiseLinear};
 use crate::contact::laws::friction_2d::friction_2d_events::Slider;
 use crate::contact::laws::saturated::Saturated;
+use crate::contact::laws::sliding_mass::SlidingMass;
 use crate::contact::linearisation::Range;
 use crate::contact::onset::{Onset, slider_in_line};
 use crate::contact::piece::Piece;
@@ -115,12 +116,15 @@ impl ContactLaw for Jenkins {
         }))
     }
 
-    fn exchanged(&self, stiffness: f64, length: f64) -> Option<Arc<dyn Law>> {
+    fn exchanged(&self, (stiffness, late): (f64, Option<f64>), length: f64) -> Option<Arc<dyn Law>> {
         if self.slider != 0.0 {
             return None;
         }
         let limit = self.slip_limit() / length;
-        Some(Arc::new(Saturated { stiffness, limit }))
+        Some(match late {
+            Some(late) => Arc::new(SlidingMass { stiffness, limit, late }),
+            None => Arc::new(Saturated { stiffness, limit }),
+        })
     }
 
     fn in_time(&self) -> Result<LawInTime> {

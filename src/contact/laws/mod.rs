@@ -10,6 +10,7 @@ pub(crate) mod jenkins;
 mod polynomial;
 pub(crate) mod regularised;
 mod saturated;
+mod sliding_mass;
 mod table;
 pub(crate) mod unilateral;
 mod user_law;

@@ -76,7 +76,7 @@ impl Branch {
         }
         let motion = self.motion_at(point).unwrap_or(&[]);
         interrupt.check()?;
-        let motion = condensed.relative_motion(motion, recovery.forces())?;
+        let motion = condensed.relative_motion(motion, recovery.forces(), self.table.omega[point])?;
         let balance = balance(condensed, omega, &x, recovery.forces(), &motion);
         let peaks = peaks(condensed, omega, &x, interrupt)?;
         let unit = |energy: f64| energy * length * length;

@@ -24,7 +24,8 @@ impl Branch {
         if !condensed.has_exchanges() {
             return try_copy(motion, CONTEXT);
         }
-        condensed.relative_motion(motion, Recovery::at(self, point, interrupt)?.forces())
+        let recovery = Recovery::at(self, point, interrupt)?;
+        condensed.relative_motion(motion, recovery.forces(), self.table.omega[point])
     }
 }
 

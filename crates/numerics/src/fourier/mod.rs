@@ -11,5 +11,5 @@ mod turning_points;
 pub use harmonic_set::{HarmonicSet, gcd};
 pub use measured::{Measure, Reader, Reading};
 pub use roots::safe_newton;
-pub use series::{Jet, VALUES_OF_A_CROSSING, crossing, jet};
+pub use series::{Jet, VALUES_OF_A_CROSSING, crossing, integral, jet};
 pub use turning_points::{Extremum, TurningPoints};

@@ -25,7 +25,23 @@ pub fn jet(set: &HarmonicSet, packed: &[f64], tau: f64) -> Jet {
     at_turn(set, packed, Complex64::cis(tau))
 }
 
-/// Value and three derivatives at the time τ with e^{iτ} = `turn`.
+/// ∫ x dτ of a packed signal without its mean, up to τ: the integral whose mean is zero.
+#[must_use]
+#[inline]
+pub fn integral(set: &HarmonicSet, packed: &[f64], tau: f64) -> f64 {
+    let mut turn = Complex64::cis(tau);
+    let stride = set.stride();
+    let step = if stride == 2 { turn * turn } else { turn };
+    let (mut sum, mut p) = (0.0, 1.0);
+    for [a, b] in packed[usize::from(set.has_mean())..].as_chunks::<2>().0 {
+        sum += (a * turn.im + b * turn.re) / p;
+        turn *= step;
+        p += stride as f64;
+    }
+    sum
+}
+
+/// x to x‴ at the time whose e^{iτ} is `turn`.
 fn at_turn(set: &HarmonicSet, packed: &[f64], mut turn: Complex64) -> Jet {
     let (mean, rest) = packed.split_at(usize::from(set.has_mean()));
     let stride = set.stride();

@@ -1,0 +1,144 @@
+//! Ends of slips that move with the motion: the derivative of the force of a slider that is a mass, [`SlidingEnds`].
+//!
+//! A slip of the sense ± from a on, with the stick stiffness α and the range r = fc/α, ends where V(b) = 0, V(τ) = ∫ (x ∓ r) dτ. A
+//! change δx moves V by A = ∫ δx dτ, hence b by δb = −A/(x(b) ∓ r). Where a stick follows, the force jumps there from ±fc to α x(b),
+//! which is an impulse
+//!
+//! > δf = α A δ(τ − b).
+//!
+//! Where slip reverses the force jumps to ∓fc at c = b + δ(q), q = ∓x(b)/r, so that
+//!
+//! > δf = ±2 α r δc δ(τ − c),  δc = δb + δ′(q) δq,  δq = ∓(δx(b) + x′(b) δb)/r,
+//!
+//! and the next slip, from b on, begins with the momentum A ∓ 2r δc. Without any stick the first slip of a half turn begins with that of
+//! the last one, of opposite sign.
+
+use crate::aft::evaluation::Evaluation;
+use crate::aft::jacobian_assembly::Assembly;
+use crate::contact::law::SlidingEnds;
+use crate::contact::piece::Piece;
+use crate::error::{Result, try_vec};
+use crate::fourier::{HarmonicSet, jet};
+use crate::interrupt::Interrupt;
+use num_complex::Complex64;
+use std::f64::consts::PI;
+
+/// Memory for the ends of slips under motions of a set of odd harmonics.
+pub(super) struct MovedEnds {
+    /// A as a row over the packed motion.
+    row: Vec<f64>,
+    /// ±2 r δc as such a row, or A.
+    jump: Vec<f64>,
+}
+
+/// Whether a piece is a slip.
+fn is_slip(piece: &Piece) -> bool {
+    piece.slope == 0.0
+}
+
+impl MovedEnds {
+    pub(super) fn new(set: &HarmonicSet) -> Result<Self> {
+        let row = || try_vec(set.packed_len(), 0.0, "a contact Jacobian");
+        Ok(Self {
+            row: row()?,
+            jump: row()?,
+        })
+    }
+
+    /// Adds the impulses at the ends of all slips among the pieces of half a turn.
+    pub(super) fn add(
+        &mut self,
+        at: (&HarmonicSet, &[f64]),
+        (pieces, law): (&[Piece], &dyn SlidingEnds),
+        assembly: &mut Assembly,
+        out: &mut Evaluation,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let (set, motion) = at;
+        if out.is_force_alone() || !pieces.iter().any(is_slip) {
+            return Ok(());
+        }
+        self.row.fill(0.0);
+        let begin = pieces.last().and_then(|last| last.anchor).map(|rest| rest - PI);
+        if pieces.iter().all(is_slip) {
+            // With m the momentum at the end for none at the begin, and Π m₀ for m₀ alone: the first is −m/(1 + Π).
+            let mut rest = begin;
+            let mut all = 1.0;
+            for piece in pieces {
+                all *= self.slip(at, (rest, piece), law);
+                rest = piece.anchor;
+            }
+            for a in &mut self.row {
+                *a /= -(1.0 + all);
+            }
+        }
+        let mut rest = begin;
+        for piece in pieces {
+            interrupt.check_before(motion.len() as u64)?;
+            if is_slip(piece) {
+                self.slip(at, (rest, piece), law);
+                let fill = |g: &mut [f64]| impulse(set, piece.end, law.stiffness(), g);
+                assembly.add_change((motion, &self.jump), fill, out, interrupt)?;
+            } else {
+                self.row.fill(0.0);
+            }
+            rest = piece.anchor;
+        }
+        Ok(())
+    }
+
+    /// Follows a slip that begins at a time of rest or, after a stick, with its piece: leaves the momentum of the next slip, and the
+    /// impulse over α. Returns the factor of the momentum at its begin.
+    fn slip(
+        &mut self,
+        (set, motion): (&HarmonicSet, &[f64]),
+        (rest, piece): (Option<f64>, &Piece),
+        law: &dyn SlidingEnds,
+    ) -> f64 {
+        let end = piece.anchor.unwrap_or(piece.end);
+        self.integrate(set, rest.unwrap_or(piece.start), end);
+        if piece.anchor.is_none() {
+            self.jump.copy_from_slice(&self.row);
+            self.row.fill(0.0);
+            return 0.0;
+        }
+        // ±r
+        let range = piece.offset / law.stiffness();
+        let at = jet(set, motion, end);
+        let slope = law.delay(-at.x / range)[1];
+        // δb = −A/(x ∓ r), δc = (1 ∓ δ′ x′/r) δb ∓ δ′ δx/r
+        let of_momentum = -(1.0 - slope * at.dx / range) / (at.x - range);
+        set.basis(end, &mut self.jump);
+        for (jump, a) in self.jump.iter_mut().zip(&mut self.row) {
+            *jump = 2.0 * range * (of_momentum * *a - slope / range * *jump);
+            *a -= *jump;
+        }
+        1.0 - 2.0 * range * of_momentum
+    }
+
+    /// Adds ∫ δx dτ between two times.
+    fn integrate(&mut self, set: &HarmonicSet, from: f64, to: f64) {
+        let turns = [from, to].map(Complex64::cis);
+        let steps = turns.map(|turn| if set.stride() == 2 { turn * turn } else { turn });
+        let ([mut a, mut b], mut p) = (turns, 1.0);
+        // x = Re Z e^{ipτ} for the packed parts of Z.
+        for [re, im] in self.row.as_chunks_mut::<2>().0 {
+            *re += (b.im - a.im) / p;
+            *im += (b.re - a.re) / p;
+            a *= steps[0];
+            b *= steps[1];
+            p += set.stride() as f64;
+        }
+    }
+}
+
+/// Packed harmonics of an impulse at a time, and of its mirror image half a turn later.
+fn impulse(set: &HarmonicSet, tau: f64, size: f64, g: &mut [f64]) {
+    let mut turn = Complex64::cis(-tau);
+    let step = if set.stride() == 2 { turn * turn } else { turn };
+    let factor = 2.0 / PI * size;
+    for [re, im] in g.as_chunks_mut::<2>().0 {
+        (*re, *im) = (factor * turn.re, factor * turn.im);
+        turn *= step;
+    }
+}
