@@ -11,6 +11,7 @@ use crate::error::{Error, Result, Status, boxed, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::exact_sums::quadratic::{self, ComplexSum};
 use crate::linalg::factors::factor::Factor;
+use crate::linalg::factors::slender_lu::SlenderLu;
 use crate::linalg::sparse_storage::sparse::Csc;
 use num_complex::Complex64;
 
@@ -159,6 +160,15 @@ impl DynamicStiffness {
     pub(crate) fn tuned(&mut self) -> Option<&mut TunedFactors> {
         self.tuned.as_deref_mut().filter(|_| self.tuned_at.is_some())
     }
+    /// The current factors, if they solve many right sides side by side, and a table of so many columns is not to be refined.
+    pub(crate) fn slender(&mut self, condensed: &Condensed, i: usize, columns: usize) -> Option<&mut SlenderLu> {
+        let may_refine = condensed.blocks()[i].reference.values.len() * columns <= CHEAP_TO_REFINE;
+        match &mut self.plain {
+            Some(plain) if self.tuned_at.is_none() && !may_refine => plain.factor.slender(),
+            _ => None,
+        }
+    }
+
 
     /// Solves with the current factors.
     fn solve_columns(&mut self, b: &mut [Complex64], transposed: bool, interrupt: &Interrupt<'_>) -> Result<()> {
