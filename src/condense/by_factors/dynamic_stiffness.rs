@@ -261,7 +261,6 @@ impl DynamicStiffness {
         if block.reference.values.len() > QUICK_TO_REFINE || !matches!(block.artificial, Artificial::None) {
             return 0.0;
         }
-        let largest = |x: &[Complex64]| x.iter().map(Complex64::norm_sqr).fold(0.0, f64::max).sqrt();
         let load = largest(b);
         if load > 0.0 {
             f64::EPSILON * self.largest * largest(x) / load
@@ -306,7 +305,6 @@ impl DynamicStiffness {
             change.1 = change.1.max(row.along(x).norm());
         }
         if block.rows.is_empty() {
-            let largest = |x: &[Complex64]| x.iter().map(|x| x.norm_sqr()).fold(0.0, f64::max).sqrt();
             change = (largest(&self.remainder), largest(x));
         }
         for (x, d) in x.iter_mut().zip(&self.remainder) {
@@ -314,6 +312,11 @@ impl DynamicStiffness {
         }
         Ok(if change.0 == 0.0 { 0.0 } else { change.0 / change.1 })
     }
+}
+
+/// Largest modulus of the numbers of a vector.
+fn largest(x: &[Complex64]) -> f64 {
+    x.iter().map(Complex64::norm_sqr).fold(0.0, f64::max).sqrt()
 }
 
 /// Z_κ or one of its derivatives as a sum of the block's matrices.

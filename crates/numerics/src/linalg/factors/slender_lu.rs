@@ -324,10 +324,9 @@ impl WithSimd for SideBySide<'_> {
             let inner = ends[0]..ends[1] - 1;
             let by = upper.val()[ends[1] - 1].inv();
             let mut own = lanes[j];
-            for lane in 0..SIDES {
-                let (re, im) = (own[0][lane], own[1][lane]);
-                own[0][lane] = by.re * re - by.im * im;
-                own[1][lane] = by.re * im + by.im * re;
+            let [re, im] = &mut own;
+            for (re, im) in re.iter_mut().zip(im) {
+                (*re, *im) = (by.re * *re - by.im * *im, by.re * *im + by.im * *re);
             }
             lanes[j] = own;
             subtract(lanes, &upper.row_idx()[inner.clone()], &upper.val()[inner], &own);
