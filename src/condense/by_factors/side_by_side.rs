@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn a_table_of_columns_side_by_side_is_that_of_columns_one_by_one() {
-        for (n, contacts) in [(300, 40), (450, 9)] {
+        for (n, contacts) in [(300, 40), (450, 20)] {
             let mut model = long_chain(n, contacts, (0.01, 1e-3));
             model.add_force(n - 2, 1, Complex64::new(0.7, -0.2)).unwrap();
             let options = SolverOptions {
