@@ -190,8 +190,12 @@ impl FrequencyCache {
         self.lacks_slopes.contains(&true)
     }
 
-    /// Whether the table of the i-th harmonic also lacks the slopes of the response, which are then found along a
-    /// motion with the others.
+    /// Whether that of the i-th harmonic lacks slopes, but for those of the response.
+    pub fn lacks_slopes_of(&self, i: usize) -> bool {
+        self.lacks_slopes[i]
+    }
+
+    /// Whether that of the i-th harmonic lacks those of the response too, which are then found along a motion with the others.
     pub fn lacks_slopes_of_response(&self, i: usize) -> bool {
         self.lacks_slopes[i] && self.is_modal[i]
     }
@@ -289,9 +293,8 @@ impl FrequencyCache {
                 true => Slopes::All,
             };
             (self.lacks_slopes[i], self.is_modal[i]) = (slopes == Slopes::OfResponse, false);
-            let found = workspace.tabulate(condensed, (i, omega), slopes, interrupt)?;
-            table.value.copy_from_slice(&found.value);
-            table.slope.copy_from_slice(&found.slope);
+            workspace.tabulate(condensed, (i, omega), slopes, interrupt)?;
+            workspace.exchange_table(table);
             condensed.exchange(i, omega, table);
             self.constant[i] = block.number == 0 && block.tied.is_none();
         }

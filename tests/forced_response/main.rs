@@ -15,6 +15,7 @@ mod direct_solutions;
 mod duffing;
 mod duffing_folds;
 mod few_dampers;
+mod flexibility_digits;
 mod folds;
 mod freedom_of_points;
 mod full_wheel;

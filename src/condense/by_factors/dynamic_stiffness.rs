@@ -11,6 +11,7 @@ use crate::error::{Error, Result, Status, boxed, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::exact_sums::quadratic::{self, ComplexSum};
 use crate::linalg::factors::factor::Factor;
+use crate::linalg::factors::slender_lu::SlenderLu;
 use crate::linalg::sparse_storage::sparse::Csc;
 use num_complex::Complex64;
 
@@ -79,13 +80,22 @@ const NOISE: f64 = 1e-12;
 /// Kind: tuned; measured on: not recorded.
 const STIFF_FOR_FACTORS: f64 = 1e5;
 
+/// Product beyond which it may have fewer than twelve digits.
+/// Kind: rounding.
+const STIFF_FOR_DIGITS: f64 = NOISE / f64::EPSILON;
+
+/// Entries of the matrix, over all columns, up to which twelve digits are worth such residuals: those of a chain of 3,000 masses would
+/// take longer than all else along its sweep.
+/// Kind: tuned; measured on: not recorded.
+const QUICK_TO_REFINE: usize = 2_000;
+
 /// Entries of the matrix, over all columns, up to which residuals with their rounding errors take no longer than the factors.
 /// Kind: tuned; measured on: not recorded.
 const CHEAP_TO_REFINE: usize = 20_000;
 
 /// Largest number of such residuals: each leaves the error of the last times that of a plain solution.
 /// Kind: cap.
-const EXACT: usize = 3;
+const EXACT: usize = 6;
 
 impl DynamicStiffness {
     /// Memory for a condensed model, solving up to `columns` right-hand sides at a time.
@@ -161,7 +171,16 @@ impl DynamicStiffness {
         self.tuned.as_deref_mut().filter(|_| self.tuned_at.is_some())
     }
 
-    /// Solves Z X = B or Zᵀ X = B in place with the current factors.
+    /// The current factors, if they solve many right sides side by side, and a table of so many columns is not to be refined.
+    pub(crate) fn slender(&mut self, condensed: &Condensed, i: usize, columns: usize) -> Option<&mut SlenderLu> {
+        let may_refine = condensed.blocks()[i].reference.values.len() * columns <= CHEAP_TO_REFINE;
+        match &mut self.plain {
+            Some(plain) if self.tuned_at.is_none() && !may_refine => plain.factor.slender(),
+            _ => None,
+        }
+    }
+
+    /// Solves with the current factors.
     fn solve_columns(&mut self, b: &mut [Complex64], transposed: bool, interrupt: &Interrupt<'_>) -> Result<()> {
         match (&mut self.tuned, &mut self.plain) {
             (Some(tuned), _) if self.tuned_at.is_some() => tuned.solve(b, interrupt),
@@ -175,7 +194,12 @@ impl DynamicStiffness {
         let entries = condensed.blocks()[i].reference.values.len();
         let count = columns.len() / condensed.ndof();
         let size = |z: &Complex64| z.re.abs().max(z.im.abs());
-        entries * count <= CHEAP_TO_REFINE && columns.iter().any(|x| self.largest * size(x) > STIFF_FOR_FACTORS)
+        let stiff = if entries * count <= QUICK_TO_REFINE {
+            STIFF_FOR_DIGITS
+        } else {
+            STIFF_FOR_FACTORS
+        };
+        entries * count <= CHEAP_TO_REFINE && columns.iter().any(|x| self.largest * size(x) > stiff)
     }
 
     /// Solves Z X = B (or Zᵀ X = B) in place. The current factors must belong to the i-th harmonic at `omega`.
@@ -213,17 +237,40 @@ impl DynamicStiffness {
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         let plain = self.refinement((condensed, i), at, b, x, false, interrupt)?;
-        let mut error = plain;
+        let mut shrinkage = plain.max(self.rounding_of_matrix(&condensed.blocks()[i], b, x));
+        let (mut error, mut before) = (shrinkage, f64::INFINITY);
+        let mut enough = NOISE;
         for _ in 0..EXACT {
-            if error <= NOISE {
+            if error <= enough {
                 break;
             }
-            error = plain * self.refinement((condensed, i), at, b, x, true, interrupt)?;
+            // The bound is below the digits that are asked for, once they take residuals of this kind.
+            enough = 0.1 * NOISE;
+            let change = self.refinement((condensed, i), at, b, x, true, interrupt)?;
+            if before.is_finite() {
+                // Without a change the ratio is none, and the error is zero.
+                shrinkage = shrinkage.min(change / before);
+            }
+            (error, before) = (shrinkage * change, change);
         }
         Ok(())
     }
 
-    /// One step x += Z⁻¹(b − Z x); returns the relative change of the relative motions.
+    /// Relative change of a solution x of Z x = b by the rounding of Z, which its factors do not show: ε‖Z‖‖x‖/‖b‖; 0 where it is not to
+    /// be removed. A mode is near a resonance of Z, where that is large in any structure.
+    fn rounding_of_matrix(&self, block: &HarmonicBlock, b: &[Complex64], x: &[Complex64]) -> f64 {
+        if block.reference.values.len() > QUICK_TO_REFINE || !matches!(block.artificial, Artificial::None) {
+            return 0.0;
+        }
+        let load = largest(b);
+        if load > 0.0 {
+            f64::EPSILON * self.largest * largest(x) / load
+        } else {
+            0.0
+        }
+    }
+
+    /// One step x += Z⁻¹(b − Z x); returns the relative change of the relative motions, without contacts that of all motions.
     fn refinement(
         &mut self,
         (condensed, i): (&Condensed, usize),
@@ -258,11 +305,19 @@ impl DynamicStiffness {
             change.0 = change.0.max(row.along(&self.remainder).norm());
             change.1 = change.1.max(row.along(x).norm());
         }
+        if block.rows.is_empty() {
+            change = (largest(&self.remainder), largest(x));
+        }
         for (x, d) in x.iter_mut().zip(&self.remainder) {
             *x += *d;
         }
         Ok(if change.0 == 0.0 { 0.0 } else { change.0 / change.1 })
     }
+}
+
+/// Largest modulus of the numbers of a vector.
+fn largest(x: &[Complex64]) -> f64 {
+    x.iter().map(Complex64::norm_sqr).fold(0.0, f64::max).sqrt()
 }
 
 /// Z_κ or one of its derivatives as a sum of the block's matrices.

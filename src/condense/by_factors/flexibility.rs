@@ -149,10 +149,10 @@ impl Workspace {
         interrupt: &Interrupt<'_>,
     ) -> Result<&Table> {
         let slopes = if slopes { Slopes::All } else { Slopes::None };
-        self.tabulate(condensed, (i, omega), slopes, interrupt)
+        self.tabulate_by_columns(condensed, (i, omega), slopes, interrupt)
     }
 
-    /// Evaluates H of the i-th carried harmonic at `omega` with the requested slopes.
+    /// The same with those slopes that are wanted. Columns of contacts are not kept where factors solve them side by side.
     ///
     /// # Errors
     /// As [`Self::evaluate`].
@@ -164,6 +164,37 @@ impl Workspace {
         interrupt: &Interrupt<'_>,
     ) -> Result<&Table> {
         made(&mut self.dynamic, condensed)?.factor(condensed, i, omega.into(), self.damping, interrupt)?;
+        if slopes != Slopes::All && self.tabulate_side_by_side(condensed, (i, omega), slopes, interrupt)? {
+            return Ok(&self.table);
+        }
+        self.tabulate_by_columns_with_factors(condensed, (i, omega), slopes, interrupt)
+    }
+
+    /// Exchanges the table that was made last for another one of the same size.
+    pub(crate) fn exchange_table(&mut self, table: &mut Table) {
+        core::mem::swap(&mut self.table, table);
+    }
+
+    /// Evaluates H and those slopes by columns that are kept, but for a wheel.
+    fn tabulate_by_columns(
+        &mut self,
+        condensed: &Condensed,
+        (i, omega): (usize, f64),
+        slopes: Slopes,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<&Table> {
+        made(&mut self.dynamic, condensed)?.factor(condensed, i, omega.into(), self.damping, interrupt)?;
+        self.tabulate_by_columns_with_factors(condensed, (i, omega), slopes, interrupt)
+    }
+
+    /// Tables by columns with the current factors.
+    fn tabulate_by_columns_with_factors(
+        &mut self,
+        condensed: &Condensed,
+        (i, omega): (usize, f64),
+        slopes: Slopes,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<&Table> {
         if slopes != Slopes::All && self.tabulate_wheel(condensed, (i, omega), interrupt)? {
             if slopes == Slopes::OfResponse {
                 self.fill_adjoint_slopes(condensed, (i, omega), interrupt)?;

@@ -3,9 +3,9 @@
 //! Where contacts are few the whole table ∂H/∂ω = −R Z_κ⁻¹ Z′ Z_κ⁻¹ B is made. Where they are many a residual takes its product with one
 //! vector of forces only, R ∂x/∂ω of the motion x under them, and the response its last row.
 
-use crate::condense::Condensed;
 use crate::condense::by_factors::dynamic_stiffness::{Variable, add_slope_product, fill_slope, multiply};
 use crate::condense::by_factors::flexibility::{CONTEXT, Table, Workspace, made, read};
+use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::complex_products::multiply_adjoint;
@@ -68,7 +68,7 @@ impl Workspace {
     }
 
     /// `load` ← r = Z⁻ᵀ Rᵀ of the response and `products` ← Z′ᵀ r, with the current factors.
-    fn move_response(
+    pub(crate) fn move_response(
         &mut self,
         condensed: &Condensed,
         (i, omega): (usize, f64),
@@ -107,14 +107,19 @@ impl Workspace {
         for (column, slopes) in self.columns.chunks_exact(n).zip(slopes) {
             slopes[outputs - 1] = -product(moved, column);
         }
-        if let (Some(unbalance), Some(last)) = (&condensed.blocks()[i].unbalance, self.table.slope.last_mut()) {
-            *last += 2.0 * omega * product(&self.load, unbalance);
-        }
+        self.add_slope_of_unbalance(&condensed.blocks()[i], omega);
         Ok(())
     }
 
-    /// The last row of ∂H/∂ω = −qᵀB with q = Z⁻ᵀ Z′ᵀ Z⁻ᵀ Rᵀ of the response, with the current factors, where no
-    /// columns Z⁻¹ B are stored.
+    /// 2ω rᵀU to the slope of the response by the excitation, after [`Self::move_response`].
+    pub(crate) fn add_slope_of_unbalance(&mut self, block: &HarmonicBlock, omega: f64) {
+        if let (Some(unbalance), Some(last)) = (&block.unbalance, self.table.slope.last_mut()) {
+            let product = self.load.iter().zip(unbalance).map(|(a, b)| a * b).sum::<Complex64>();
+            *last += 2.0 * omega * product;
+        }
+    }
+
+    /// The last row of ∂H/∂ω = −qᵀB with q = Z⁻ᵀ Z′ᵀ Z⁻ᵀ Rᵀ of the response, where no columns are at hand, with the current factors.
     pub(crate) fn fill_adjoint_slopes(
         &mut self,
         condensed: &Condensed,

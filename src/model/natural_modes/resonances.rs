@@ -5,7 +5,7 @@ use crate::error::{Error, Result, Status, check_memory, try_copy, try_extend, tr
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::eigen;
 use crate::linalg::exact_sums::quadratic::about_quadratic;
-use crate::linalg::iterative::lanczos;
+use crate::linalg::iterative::{lanczos, spectrum_slices};
 use crate::linalg::libraries::{DMatrix, Schur};
 use crate::linalg::sparse_storage::held_rows::MovingRows;
 use crate::linalg::sparse_storage::sparse::{Csc, Form};
@@ -56,6 +56,10 @@ const AT_END: f64 = 1e-9;
 /// Largest number of modes of a search in the range.
 /// Kind: cap.
 const RESONANCES_MOST_MODES: usize = 500;
+
+/// Entries of all mode shapes of a structure up to which there may be more, 144 MB.
+/// Kind: cap.
+const RESONANCES_ENTRIES: usize = 9_000_000;
 
 /// The same with gyroscopic forces, counted from zero.
 /// Kind: cap; the work of the search grows with the square of the number.
@@ -270,7 +274,12 @@ fn modes_within(k: &Csc, m: &Csc, range: Range, interrupt: &Interrupt<'_>) -> Re
         }
         // Rounding at an end loses no mode there.
         let interval = (low * low - AT_END * high * high, (1.0 + AT_END) * high * high);
-        if let Some(pairs) = lanczos::within((k, m), interval, RESONANCES_MOST_MODES.min(n / 4), interrupt)? {
+        let most = if n > DENSE_IF_MANY {
+            RESONANCES_MOST_MODES.max(RESONANCES_ENTRIES / n)
+        } else {
+            RESONANCES_MOST_MODES.min(n / 4)
+        };
+        if let Some(pairs) = spectrum_slices::within((k, m), interval, most, interrupt)? {
             return Ok(Some(pairs));
         }
         if n > DENSE_IF_MANY {

@@ -1,10 +1,11 @@
 //! Factors of a complex matrix in sparse storage: dense factors for small or full matrices, sparse ones for large
-//! matrices.
+//! matrices, with a solution of their own where they have few entries in a column.
 
 use crate::error::{Error, Result, Status, fail, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::factors::cholesky;
 use crate::linalg::factors::lu::Lu;
+use crate::linalg::factors::slender_lu::SlenderLu;
 use crate::linalg::sparse_storage::sparse::Csc;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::LuError;
@@ -22,6 +23,10 @@ const BY_FILL_UP_TO: usize = 200;
 /// Kind: tuned; measured on: not recorded.
 const DENSE_FILL: f64 = 0.1;
 
+/// Entries in a column of a triangular factor, on average, up to which there are no panels worth a blocked product.
+/// Kind: tuned; measured on: a rod of 1,000 with 300 sliders, this number alone.
+const SLENDER: usize = 16;
+
 /// Right-hand sides of a sparse matrix that are solved between two checks of the interrupt.
 /// Kind: block.
 const FACTOR_BETWEEN_CHECKS: usize = 8;
@@ -37,6 +42,7 @@ pub struct Factor {
 
 enum Kind {
     Dense(Lu<Complex64>),
+    Slender(Box<SlenderLu>),
     Sparse(Box<Sparse>),
 }
 
@@ -60,6 +66,8 @@ impl Factor {
         let n = a.rows;
         let kind = if is_dense(a)? {
             Kind::Dense(Lu::new(n, columns)?)
+        } else if is_slender(a)? {
+            Kind::Slender(Box::new(SlenderLu::new(n)?))
         } else {
             Kind::Sparse(Box::new(Sparse {
                 n,
@@ -104,6 +112,10 @@ impl Factor {
                 interrupt.check()?;
                 lu.factor(interrupt)
             }
+            Kind::Slender(slender) => {
+                interrupt.announce_factorisation()?;
+                slender.factor(a)
+            }
             Kind::Sparse(sparse) => {
                 interrupt.announce_factorisation()?;
                 sparse.factor(a)
@@ -118,6 +130,12 @@ impl Factor {
     pub fn solve(&mut self, b: &mut [Complex64], transposed: bool, interrupt: &Interrupt<'_>) -> Result<()> {
         match &mut self.kind {
             Kind::Dense(lu) => lu.solve_columns(b, transposed, interrupt)?,
+            Kind::Slender(slender) => {
+                for b in b.chunks_exact_mut(slender.order()) {
+                    interrupt.check_before(OF_ONE_SOLUTION * b.len() as u64)?;
+                    slender.solve(b, transposed)?;
+                }
+            }
             Kind::Sparse(sparse) => {
                 for b in b.chunks_mut(FACTOR_BETWEEN_CHECKS * sparse.n) {
                     interrupt.check_before(OF_ONE_SOLUTION * b.len() as u64)?;
@@ -130,6 +148,23 @@ impl Factor {
         }
         Ok(())
     }
+}
+
+impl Factor {
+    /// The factors that solve many right sides side by side, if they are such.
+    pub fn slender(&mut self) -> Option<&mut SlenderLu> {
+        match &mut self.kind {
+            Kind::Slender(slender) => Some(slender),
+            Kind::Dense(_) | Kind::Sparse(_) => None,
+        }
+    }
+}
+
+/// Whether the factors of a matrix that is not dense have few entries in a column.
+fn is_slender(a: &Csc) -> Result<bool> {
+    let most = SLENDER * a.rows;
+    // The factors have the entries of the matrix at least.
+    Ok(a.values.len() / 2 <= most && cholesky::entries_by_degrees(a)? <= most)
 }
 
 /// Whether a matrix is treated as dense.

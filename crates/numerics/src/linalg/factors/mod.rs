@@ -5,4 +5,5 @@ pub mod factor;
 pub mod inertia;
 pub mod lu;
 pub mod shifted_inverse;
+pub mod slender_lu;
 pub mod small_lu;

@@ -31,6 +31,10 @@ const VECTOR: f64 = 1e-8;
 /// Kind: rounding.
 const LANCZOS_EXHAUSTED: f64 = 1e-12;
 
+/// Share of the square of a vector that is left after its components are removed, from which that need not be repeated.
+/// Kind: rounding.
+const ENOUGH_LEFT: f64 = 0.25;
+
 /// Value of the operator below zero, relative to the largest, that is no rounding.
 /// Kind: rounding.
 const NEGATIVE: f64 = 1e-12;
@@ -38,6 +42,8 @@ const NEGATIVE: f64 = 1e-12;
 /// Lanczos steps per search, besides twice the number of eigenvalues.
 /// Kind: tuned; measured on: not recorded.
 const EXTRA_STEPS: usize = 120;
+
+const CONTEXT: &str = "the eigenvectors";
 
 /// The `count` lowest eigenpairs of Hermitian K and positive semidefinite M, mass-normalised.
 ///
@@ -113,12 +119,11 @@ const MOVES: usize = 8;
 /// Kind: tuned; measured on: not recorded.
 const BACK: f64 = 4.0;
 
-/// All eigenpairs with λ in an interval (low, high), mass-normalised and ascending; `None` if there are more than
-/// `most`.
+/// All eigenpairs with λ in an interval (low, high) by one search, mass-normalised and ascending; `None` if they are more than `most`.
 ///
 /// # Errors
 /// As [`lowest`].
-pub fn within(
+pub(super) fn within_at_once(
     (k, m): (&Csc, &Csc),
     (low, high): (f64, f64),
     most: usize,
@@ -230,7 +235,6 @@ struct Run {
 impl Run {
     /// Ritz values; and the last `rows` coefficients of their vectors, vector after vector.
     fn ritz(&self, rows: usize, interrupt: &Interrupt<'_>) -> Result<(Vec<f64>, Vec<f64>)> {
-        const CONTEXT: &str = "the eigenvectors";
         let size = self.alpha.len();
         let (mut values, mut beside) = (try_copy(&self.alpha, CONTEXT)?, try_vec(size, 0.0, CONTEXT)?);
         for (to, beta) in beside.iter_mut().zip(&self.beta[1..]) {
@@ -307,7 +311,7 @@ impl Search<'_> {
     /// The eigenpairs found, in the order of λ.
     fn pairs(&self, shift: f64) -> Result<Pairs> {
         let n = self.mass.rows;
-        let values = try_vec(n.saturating_mul(self.found.len()), Complex64::ZERO, "the eigenvectors")?;
+        let values = try_vec(n.saturating_mul(self.found.len()), Complex64::ZERO, CONTEXT)?;
         let mut vectors = DMatrix::from_vec(n, self.found.len(), values);
         for (mut column, (_, v, _)) in vectors.column_iter_mut().zip(&self.found) {
             column.as_mut_slice().copy_from_slice(v);
@@ -336,7 +340,7 @@ impl Search<'_> {
         for step in 0..steps {
             self.interrupt.part(Phase::Modes, step, steps)?;
             let before = inner(&v, &self.times_mass(&v)?).re.max(0.0).sqrt();
-            self.orthogonalise(&mut v, &run);
+            self.orthogonalise(&mut v, &run)?;
             let mut mv = self.times_mass(&v)?;
             let square = inner(&v, &mv).re;
             if square < -(LANCZOS_EXHAUSTED * before).powi(2) {
@@ -354,8 +358,8 @@ impl Search<'_> {
             let mut next = mv.clone();
             self.inverse.solve(&mut next, self.interrupt)?;
             run.alpha.push(inner(&mv, &next).re);
-            try_push(&mut run.basis, v, "the eigenvectors")?;
-            try_push(&mut run.weighted, mv, "the eigenvectors")?;
+            try_push(&mut run.basis, v, CONTEXT)?;
+            try_push(&mut run.weighted, mv, CONTEXT)?;
             v = next;
             let done = run.basis.len();
             let may_end = done > most || matches!(goal, Goal::Above(..));
@@ -370,7 +374,7 @@ impl Search<'_> {
     /// Size of the part of the next vector that the basis does not hold.
     fn after(&self, run: &Run, v: &[Complex64]) -> Result<f64> {
         let mut rest = v.to_vec();
-        self.orthogonalise(&mut rest, run);
+        self.orthogonalise(&mut rest, run)?;
         Ok(inner(&rest, &self.times_mass(&rest)?).re.max(0.0).sqrt())
     }
 
@@ -439,7 +443,7 @@ impl Search<'_> {
         }
         for (mu, _, s) in ritz {
             self.interrupt.check()?;
-            let mut x = try_vec(run.basis[0].len(), Complex64::ZERO, "the eigenvectors")?;
+            let mut x = try_vec(run.basis[0].len(), Complex64::ZERO, CONTEXT)?;
             for (q, c) in run.basis.iter().zip(s) {
                 for (x, q) in x.iter_mut().zip(q) {
                     *x += q * c;
@@ -447,7 +451,7 @@ impl Search<'_> {
             }
             largest = largest.max(mu.abs());
             let mx = self.times_mass(&x)?;
-            try_push(&mut self.found, (mu, x, mx), "the eigenvectors")?;
+            try_push(&mut self.found, (mu, x, mx), CONTEXT)?;
         }
         Ok(largest)
     }
@@ -459,27 +463,39 @@ impl Search<'_> {
     }
 
     fn times_mass(&self, v: &[Complex64]) -> Result<Vec<Complex64>> {
-        let mut mv = try_vec(v.len(), Complex64::ZERO, "the eigenvectors")?;
+        let mut mv = try_vec(v.len(), Complex64::ZERO, CONTEXT)?;
         self.mass.multiply_add(Complex64::ONE, v, &mut mv);
         Ok(mv)
     }
 
-    /// Removes from v, twice, its components along the basis and along the vectors found.
-    fn orthogonalise(&self, v: &mut [Complex64], run: &Run) {
+    /// Removes from v its components along the basis and along the vectors found, again where little of it is left: once leaves rounding
+    /// of the size of v before, relative to v after (Giraud & Langou 2002, doi:10.1093/imanum/22.4.521).
+    fn orthogonalise(&self, v: &mut [Complex64], run: &Run) -> Result<()> {
+        let size = |v: &[Complex64]| -> Result<f64> { Ok(inner(v, &self.times_mass(v)?).re.max(0.0)) };
+        // By Lanczos' recurrence the components along the last two are all that is not rounding.
+        let last = run.basis.len().saturating_sub(2);
+        for (q, mq) in run.basis[last..].iter().zip(&run.weighted[last..]) {
+            remove(v, q, inner(mq, v));
+        }
         for _ in 0..2 {
+            let before = size(v)?;
             for (q, mq) in run.basis.iter().zip(&run.weighted) {
                 remove(v, q, inner(mq, v));
             }
             for (_, q, mq) in &self.found {
                 remove(v, q, inner(mq, v));
             }
+            if size(v)? >= ENOUGH_LEFT * before {
+                break;
+            }
         }
+        Ok(())
     }
 }
 
 /// A starting vector without structure, the same on every run.
 pub(crate) fn start(n: usize, round: usize) -> Result<Vec<Complex64>> {
-    let mut v = try_vec(n, Complex64::ZERO, "the eigenvectors")?;
+    let mut v = try_vec(n, Complex64::ZERO, CONTEXT)?;
     let mut state = 0x9e37_79b9_7f4a_7c15_u64 ^ (round as u64 + 1);
     let mut draw = || {
         // xorshift (Marsaglia 2003, doi:10.18637/jss.v008.i14)

@@ -104,7 +104,9 @@ fn all_eigenvalues_of_an_interval_are_found_with_their_copies() {
             .map(|i| of_chain(i / 3))
             .filter(|x| (low..=high).contains(x))
             .collect();
-        let pairs = within((&k, &m), (low, high), 200, &Interrupt::none()).unwrap().unwrap();
+        let pairs = within_at_once((&k, &m), (low, high), 200, &Interrupt::none())
+            .unwrap()
+            .unwrap();
         assert_eq!(pairs.values.len(), exact.len(), "{low} .. {high}");
         for (at, (value, exact)) in pairs.values.iter().zip(&exact).enumerate() {
             assert!((value - exact).abs() < 1e-11, "{value} against {exact}");
@@ -116,7 +118,11 @@ fn all_eigenvalues_of_an_interval_are_found_with_their_copies() {
             assert!(off < 1e-6, "{low} .. {high}, {at}: {off:e}");
         }
     }
-    assert!(within((&k, &m), (0.5, 2.5), 20, &Interrupt::none()).unwrap().is_none());
+    assert!(
+        within_at_once((&k, &m), (0.5, 2.5), 20, &Interrupt::none())
+            .unwrap()
+            .is_none()
+    );
 }
 
 #[test]
@@ -145,7 +151,9 @@ fn intervals_of_complex_pencils_with_massless_motions_are_those_of_dense_algebra
         for (from, to) in [(0, 9), (20, 60), (n / 2, n / 2 + 2), (n / 3, 2 * n / 3)] {
             let middle = |at: usize| 0.5 * (all[at] + all[at + 1]);
             let interval = (if from == 0 { all[0] - 1.0 } else { middle(from - 1) }, middle(to));
-            let found = within((&k, &m), interval, n, &Interrupt::none()).unwrap().unwrap();
+            let found = within_at_once((&k, &m), interval, n, &Interrupt::none())
+                .unwrap()
+                .unwrap();
             assert_eq!(found.values.len(), to + 1 - from, "{n}, {from} to {to}");
             for (value, exact) in found.values.iter().zip(&all[from..=to]) {
                 assert!((value - exact).abs() < 1e-10, "{n}: {value} against {exact}");

@@ -5,3 +5,4 @@ pub mod gmres;
 pub mod lanczos;
 pub mod near_shift;
 pub mod orthonormal_block;
+pub mod spectrum_slices;

@@ -289,6 +289,24 @@ impl KrylovSystem {
         Ok(true)
     }
 
+    /// Fills the block of the matrix at the point of the Jacobian, with the border that was taken over last.
+    fn fill_block(&mut self, jacobian: &mut dyn Jacobian) -> Result<()> {
+        let (lengths, is_direct) = (self.lengths, self.is_direct());
+        let (matrix, active) = self.block.memory();
+        if is_direct {
+            jacobian.fill(matrix, active)?;
+        } else {
+            operator(jacobian)?.fill_block(lengths.part, matrix, active)?;
+        }
+        let (groups, behind) = self.column.split_at(self.column.len() - lengths.behind);
+        let groups = groups.chunks_exact(lengths.group.max(1));
+        let column = groups.flat_map(|y| y[..lengths.part].iter().copied());
+        let column = column.chain(behind.iter().copied());
+        self.block
+            .set_border(column, self.scales, Self::of_block(&self.row, lengths));
+        Ok(())
+    }
+
     /// Whether the block is the whole matrix.
     fn is_direct(&self) -> bool {
         self.lengths.group == self.lengths.part
@@ -335,23 +353,12 @@ impl LinearSystem for KrylovSystem {
             wheel.set_border(operator(jacobian)?, border)?;
             return operator(jacobian)?.keep();
         }
-        let is_direct = self.is_direct();
-        let (matrix, active) = self.block.memory();
-        if is_direct {
-            jacobian.fill(matrix, active)?;
+        if self.is_direct() {
+            self.fill_block(jacobian)
         } else {
-            let operator = operator(jacobian)?;
-            operator.fill_block(self.lengths.part, matrix, active)?;
-            operator.keep()?;
+            // The block is filled where it is factored: most solutions are by earlier factors.
+            operator(jacobian)?.keep()
         }
-        let lengths = self.lengths;
-        let (groups, behind) = border.column.split_at(border.column.len() - lengths.behind);
-        let groups = groups.chunks_exact(lengths.group.max(1));
-        let column = groups.flat_map(|y| y[..lengths.part].iter().copied());
-        let column = column.chain(behind.iter().copied());
-        self.block
-            .set_border(column, border.scales, Self::of_block(border.row, lengths));
-        Ok(())
     }
 
     fn factor(&mut self, jacobian: &mut dyn Jacobian, interrupt: &Interrupt<'_>) -> Result<()> {
@@ -366,6 +373,7 @@ impl LinearSystem for KrylovSystem {
             return wheel.set_border(operator(jacobian)?, border);
         }
         if !self.is_direct() {
+            self.fill_block(jacobian)?;
             self.pairs.factor(self.lengths, operator(jacobian)?, interrupt)?;
         }
         self.block.factor_memory(interrupt)
