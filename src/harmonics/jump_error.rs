@@ -12,6 +12,9 @@
 //! without the harmonic h_r know nothing of it, and neither does one extension of them. Their own forces come late, too, by about a half of
 //! that at H = h_r: the other half is counted, as a change of the slip limit by 1/(2 h_r). A ring is a filter of second order:
 //! beyond it the harmonics of the force fall by two powers more, and their sum with H as H^-3.
+//!
+//! Where the exchanged motion is the force on a mass, the law has all harmonics of the jumps, and its forces are late by g/h_r at the
+//! frequency ω₀: the change at another one, and a share for what is of second order, are counted.
 
 use crate::condense::Condensed;
 use crate::error::{Result, try_vec};

@@ -5,8 +5,8 @@ use crate::common::models::{Structure, diagonal};
 use crate::common::refusal::refused;
 use crate::common::{all_harmonics, harmonics, omega_range, solve_at};
 use hbvib::{
-    BladeProperty, ContactState, ForcedOptions, Hooks, Interrupt, MatrixKind, Mistuning, Model, Response, Status,
-    forced_response,
+    BladeProperty, Contact, ContactState, ForcedOptions, Hooks, Interrupt, MatrixKind, MatrixView, Mistuning, Model,
+    Response, Status, forced_response,
 };
 use num_complex::Complex64;
 
