@@ -9,7 +9,6 @@ use crate::error::{Result, try_copy, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::problem::Problem;
-use num_complex::Complex64;
 
 /// Special points that are searched for between two points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -263,8 +262,8 @@ impl Locator {
         Ok(None)
     }
 
-    /// The solution at parameter `p` between `a` and `b`, found from the cubic through them; and the unknowns and the amplitude
-    /// that the cubic has there. `None` where Newton's method leads from the cubic to no solution near it.
+    /// The solution at parameter `p` between `a` and `b`, found from the cubic through them; and the same point with the unknowns
+    /// and the amplitude that the cubic has there. `None` where Newton's method leads from the cubic to no solution near it.
     ///
     /// # Errors
     /// Those of the problem; `StoppedByCaller`.
@@ -274,15 +273,22 @@ impl Locator {
         (a, b): (&Point, &Point),
         p: f64,
         interrupt: &Interrupt<'_>,
-    ) -> Result<Option<(Point, (Vec<f64>, Complex64))>> {
+    ) -> Result<Option<(Point, Point)>> {
         let metric = self.metric(a, b);
         let s = self.where_at(a, b, metric, p)?;
         let cubic = Cubic::new(a, b, metric);
         let mut guess = try_copy(&a.v, CONTEXT)?;
         cubic.place(s, &mut guess);
-        guess.truncate(a.unknowns().len());
-        let found = self.solve_between(problem, metric, (a, b), s, Some(p), interrupt)?;
-        Ok(found.map(|found| (found, (guess, cubic.amplitude(s)))))
+        let Some(found) = self.solve_between(problem, metric, (a, b), s, Some(p), interrupt)? else {
+            return Ok(None);
+        };
+        let expected = Point {
+            v: guess,
+            tangent: try_copy(&found.tangent, CONTEXT)?,
+            amplitude: cubic.amplitude(s),
+            ..found
+        };
+        Ok(Some((found, expected)))
     }
 
     /// Position on the arc from `a` to `b` at which the cubic has parameter `p`.

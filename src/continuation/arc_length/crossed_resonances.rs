@@ -93,9 +93,13 @@ impl Continuation {
         };
         let size = norm(found.unknowns()).max(self.least_size());
         let amplitude = found.amplitude.norm().max(FLOOR * self.largest.1);
-        let squares = found.unknowns().iter().zip(&guess.0).map(|(a, b)| (a - b) * (a - b));
+        let squares = found
+            .unknowns()
+            .iter()
+            .zip(guess.unknowns())
+            .map(|(a, b)| (a - b) * (a - b));
         let departure = squares.sum::<f64>().sqrt();
-        let observed = (found.amplitude - guess.1).norm();
+        let observed = (found.amplitude - guess.amplitude).norm();
         Ok(departure <= UNFELT * size && observed <= UNFELT * amplitude)
     }
 }
