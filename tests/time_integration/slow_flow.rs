@@ -5,8 +5,8 @@ use crate::common::models::{self, dense, oscillator};
 use crate::common::random;
 use crate::common::{amplitude_range, at_dof, harmonics};
 use hbvib::{
-    Branch, Contact, Hooks, Interrupt, MatrixKind, MatrixView, Model, RunUp, RunUpOptions, Status, SweepOptions,
-    nonlinear_mode, run_up, sweep,
+    Branch, Contact, Hooks, Interrupt, MatrixKind, MatrixView, ModeOptions, Model, RunUp, RunUpOptions, SolverOptions,
+    Status, SweepOptions, nonlinear_mode, run_up, sweep,
 };
 
 /// Three masses on springs with one to three sliders.

@@ -183,7 +183,10 @@ impl PiecewiseLinear for SlidingMass {
                 begin = walk.moved_begin((start, from), step).unwrap_or(begin);
             }
         }
-        Ok(())
+        fail!(
+            NoConvergence,
+            "the motion of a rigid slider does not repeat itself after {MOST_HALF_TURNS} half turns"
+        )
     }
 
     fn sampled_pieces(&self, samples: &[f64], pieces: &mut Vec<Piece>) {
