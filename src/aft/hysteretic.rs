@@ -33,11 +33,7 @@ pub struct HystereticEvaluator {
     /// Common divisor g of the numbers of the carried harmonics.
     base: f64,
     signals: Signals,
-    /// Fourier weights of the numbers of a packed signal.
-    weights: Vec<f64>,
-    /// Motion and velocity of a straight load from zero, as two samples of a period: the loaded one, then zero.
-    load_u: Vec<f64>,
-    load_v: Vec<f64>,
+    load: NormalLoad,
     march: March,
     map: ReturnMap,
     /// Memory for derivatives; `None` where the force alone is evaluated.
@@ -48,6 +44,15 @@ pub struct HystereticEvaluator {
     by_newton: Vec<bool>,
     step: Vec<f64>,
     marches: usize,
+}
+
+/// Weights of samples, and the motions that load a contact.
+pub struct NormalLoad {
+    /// Fourier weights of the numbers of a packed signal.
+    weights: Vec<f64>,
+    /// Motion and velocity of a straight load from zero, as two samples of a period: the loaded one, then zero.
+    u: Vec<f64>,
+    v: Vec<f64>,
 }
 
 impl HystereticEvaluator {
@@ -84,9 +89,11 @@ impl HystereticEvaluator {
             states: s,
             base: set.base() as f64,
             signals: Signals::new(set, d, law.uses_velocity(), samples)?,
-            weights,
-            load_u: memory(2 * d)?,
-            load_v: memory(if law.uses_velocity() { 2 * d } else { 0 })?,
+            load: NormalLoad {
+                weights,
+                u: memory(2 * d)?,
+                v: memory(if law.uses_velocity() { 2 * d } else { 0 })?,
+            },
             march: March::new(d, s, samples)?,
             map: ReturnMap::new(s)?,
             sensitivity: if force_alone {
@@ -105,7 +112,7 @@ impl HystereticEvaluator {
     pub fn suits(&self, law: &dyn Hysteretic, samples: usize) -> bool {
         self.signals.directions == law.directions()
             && self.states == law.states()
-            && self.load_v.is_empty() != law.uses_velocity()
+            && self.load.v.is_empty() != law.uses_velocity()
             && self.signals.samples == samples
     }
 
@@ -174,8 +181,8 @@ impl HystereticEvaluator {
     /// Multiplies the Fourier sums by their weights, and computes the offset.
     fn finish(&self, motion: &[f64], out: &mut Evaluation) {
         let weigh = |sums: &mut [f64]| {
-            for signal in sums.chunks_exact_mut(self.weights.len().max(1)) {
-                for (value, weight) in signal.iter_mut().zip(&self.weights) {
+            for signal in sums.chunks_exact_mut(self.load.weights.len().max(1)) {
+                for (value, weight) in signal.iter_mut().zip(&self.load.weights) {
                     *value *= weight;
                 }
             }
@@ -210,12 +217,12 @@ impl HystereticEvaluator {
             ..
         } = &self.signals;
         let last = (samples - 1) * directions;
-        self.load_u[..*directions].copy_from_slice(&u[last..]);
+        self.load.u[..*directions].copy_from_slice(&u[last..]);
         if !v.is_empty() {
-            self.load_v[..*directions].copy_from_slice(&v[last..]);
+            self.load.v[..*directions].copy_from_slice(&v[last..]);
         }
         self.step.fill(0.0);
-        law.march(omega, 2, &self.load_u, &self.load_v, &self.step, &mut self.march)?;
+        law.march(omega, 2, &self.load.u, &self.load.v, &self.step, &mut self.march)?;
         self.starts[..self.states].copy_from_slice(&self.march.z[..self.states]);
         if let Some(sensitivity) = &mut self.sensitivity {
             sensitivity.load(&self.march, &self.signals, omega);

@@ -27,6 +27,13 @@ pub struct MemorylessEvaluator {
     /// Number of samples per period that was requested.
     requested: usize,
     transform: Transform,
+    signals: SampledSignals,
+    memory: TransformMemory,
+    toeplitz: Toeplitz,
+}
+
+/// Motion, force and their derivatives at the samples.
+pub struct SampledSignals {
     /// Motions and velocities at the samples, samples × d each.
     u: Vec<f64>,
     v: Vec<f64>,
@@ -34,10 +41,13 @@ pub struct MemorylessEvaluator {
     f: Vec<f64>,
     df_du: Vec<f64>,
     df_dv: Vec<f64>,
+}
+
+/// Memory of transforms.
+pub struct TransformMemory {
     scratch: Vec<f64>,
     /// Harmonics 0 ..= 2·highest of the signal transformed last.
     spectrum: Vec<Complex64>,
-    toeplitz: Toeplitz,
     /// Harmonics ih·X of the derivative by the reduced time, d·m numbers.
     quadrature: Vec<f64>,
     /// Packed harmonics of one velocity, m numbers.
@@ -90,21 +100,25 @@ impl MemorylessEvaluator {
             half_suffices: law.half_period_suffices(),
             requested,
             transform,
-            u: samples(signals)?,
-            v: samples(with_velocity * signals)?,
-            f: samples(signals)?,
-            df_du: samples(tangents)?,
-            df_dv: samples(with_velocity * tangents)?,
-            scratch: samples(signals.saturating_mul(2))?,
-            spectrum: try_vec(2 * highest + 1, Complex64::ZERO, "a stiffness spectrum")?,
-            toeplitz: Toeplitz::new(set)?,
-            quadrature: samples(with_velocity * d * m)?,
-            packed: samples(with_velocity * m)?,
-            block: if force_alone {
-                Vec::new()
-            } else {
-                try_vec(with_velocity * m.saturating_mul(m), 0.0, "a contact Jacobian")?
+            signals: SampledSignals {
+                u: samples(signals)?,
+                v: samples(with_velocity * signals)?,
+                f: samples(signals)?,
+                df_du: samples(tangents)?,
+                df_dv: samples(with_velocity * tangents)?,
             },
+            memory: TransformMemory {
+                scratch: samples(signals.saturating_mul(2))?,
+                spectrum: try_vec(2 * highest + 1, Complex64::ZERO, "a stiffness spectrum")?,
+                quadrature: samples(with_velocity * d * m)?,
+                packed: samples(with_velocity * m)?,
+                block: if force_alone {
+                    Vec::new()
+                } else {
+                    try_vec(with_velocity * m.saturating_mul(m), 0.0, "a contact Jacobian")?
+                },
+            },
+            toeplitz: Toeplitz::new(set)?,
         })
     }
 
@@ -134,19 +148,19 @@ impl MemorylessEvaluator {
             return Ok(());
         }
         self.sample(set, omega, motion, interrupt)?;
-        for values in [&mut self.f, &mut self.df_du, &mut self.df_dv] {
+        for values in [&mut self.signals.f, &mut self.signals.df_du, &mut self.signals.df_dv] {
             values.fill(0.0);
         }
         let samples = Samples {
-            f: &mut self.f,
-            df_du: &mut self.df_du,
-            df_dv: &mut self.df_dv,
-            scratch: &mut self.scratch,
+            f: &mut self.signals.f,
+            df_du: &mut self.signals.df_du,
+            df_dv: &mut self.signals.df_dv,
+            scratch: &mut self.memory.scratch,
         };
         // The samples cover the period 2π/(gω) of the set.
         let own = set.base() as f64 * omega;
         interrupt.check()?;
-        law.evaluate(own, self.transform.held(), &self.u, &self.v, samples)?;
+        law.evaluate(own, self.transform.held(), &self.signals.u, &self.signals.v, samples)?;
         out.clear();
         self.forces(set, out);
         if out.is_force_alone() {
@@ -172,19 +186,20 @@ impl MemorylessEvaluator {
             interrupt.check()?;
             let lane = Lane { first, step };
             let x = &motion[first * m..(first + 1) * m];
-            self.transform.synthesise(set, x, &mut self.u, lane);
+            self.transform.synthesise(set, x, &mut self.signals.u, lane);
             if !self.velocity {
                 continue;
             }
-            let quadrature = &mut self.quadrature[first * m..(first + 1) * m];
+            let quadrature = &mut self.memory.quadrature[first * m..(first + 1) * m];
             for (i, &h) in set.numbers().iter().enumerate() {
                 let rotated = Complex64::I * h as f64 * set.get(x, i);
                 set.set(quadrature, i, rotated);
             }
-            for (v, q) in self.packed.iter_mut().zip(&*quadrature) {
+            for (v, q) in self.memory.packed.iter_mut().zip(&*quadrature) {
                 *v = omega * q;
             }
-            self.transform.synthesise(set, &self.packed, &mut self.v, lane);
+            self.transform
+                .synthesise(set, &self.memory.packed, &mut self.signals.v, lane);
         }
         Ok(())
     }
@@ -192,11 +207,11 @@ impl MemorylessEvaluator {
     /// Computes the packed harmonics of the forces.
     fn forces(&mut self, set: &HarmonicSet, out: &mut Evaluation) {
         let (m, step) = (set.packed_len(), self.directions);
-        let harmonics = &mut self.spectrum[..=set.highest_reduced()];
+        let harmonics = &mut self.memory.spectrum[..=set.highest_reduced()];
         let mean = usize::from(set.has_mean());
         for (first, force) in out.force.chunks_exact_mut(m).enumerate() {
             self.transform
-                .analyse(&self.f, Lane { first, step }, Half::Opposite, harmonics);
+                .analyse(&self.signals.f, Lane { first, step }, Half::Opposite, harmonics);
             if mean == 1 {
                 force[0] = harmonics[0].re;
             }
@@ -225,20 +240,20 @@ impl MemorylessEvaluator {
                 let lane = Lane { first: i * d + j, step };
                 let corner = j * m * order + i * m;
                 self.transform
-                    .analyse(&self.df_du, lane, Half::Repeats, &mut self.spectrum);
-                self.toeplitz.set(set, &self.spectrum);
+                    .analyse(&self.signals.df_du, lane, Half::Repeats, &mut self.memory.spectrum);
+                self.toeplitz.set(set, &self.memory.spectrum);
                 self.toeplitz.add(&mut out.jacobian[corner..], order);
                 if !self.velocity {
                     continue;
                 }
                 self.transform
-                    .analyse(&self.df_dv, lane, Half::Repeats, &mut self.spectrum);
-                self.block.fill(0.0);
-                self.toeplitz.set(set, &self.spectrum);
-                self.toeplitz.add(&mut self.block, m);
+                    .analyse(&self.signals.df_dv, lane, Half::Repeats, &mut self.memory.spectrum);
+                self.memory.block.fill(0.0);
+                self.toeplitz.set(set, &self.memory.spectrum);
+                self.toeplitz.add(&mut self.memory.block, m);
                 let by_omega = &mut out.by_omega[i * m..(i + 1) * m];
-                let quadrature = &self.quadrature[j * m..(j + 1) * m];
-                for (column, q) in self.block.chunks_exact(m).zip(quadrature) {
+                let quadrature = &self.memory.quadrature[j * m..(j + 1) * m];
+                for (column, q) in self.memory.block.chunks_exact(m).zip(quadrature) {
                     for (b, t) in by_omega.iter_mut().zip(column) {
                         *b += t * q;
                     }
@@ -248,7 +263,7 @@ impl MemorylessEvaluator {
                 for (pair, &h) in set.numbers()[mean..].iter().enumerate() {
                     let rate = omega * h as f64;
                     let at = mean + 2 * pair;
-                    let (re, im) = self.block[at * m..(at + 2) * m].split_at(m);
+                    let (re, im) = self.memory.block[at * m..(at + 2) * m].split_at(m);
                     for (shift, factor, source) in [(0, rate, im), (1, -rate, re)] {
                         let begin = corner + (at + shift) * order;
                         for (entry, t) in out.jacobian[begin..begin + m].iter_mut().zip(source) {

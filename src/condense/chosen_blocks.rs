@@ -114,12 +114,12 @@ fn direct_blocks(
             Some(known) => shared_block(model, number, known, request.contacts, &kappa)?,
             None => harmonic_block(model, number, request.contacts, |c| kappa(c, number), interrupt)?,
         };
-        block.artificial = match mode {
+        block.matrices.artificial = match mode {
             None => Artificial::None,
             Some(DampingForm::Mass) => Artificial::Mass,
             Some(DampingForm::Stiffness) => {
                 let structure = model.structure().wave_matrix(MatrixKind::Stiffness, number)?;
-                Artificial::Stiffness(structure.aligned(&block.reference)?)
+                Artificial::Stiffness(structure.aligned(&block.matrices.reference)?)
             }
         };
         try_push(&mut blocks, block, "the matrices per harmonic")?;

@@ -9,7 +9,7 @@
 //! that neither the free nor the stuck resonances of an undamped structure are singular. The whole motion follows
 //! as x = Z_κ⁻¹(F − Wᴴ(f − κ y)).
 
-use crate::condense::blocks::condensed::{AssembledLaw, Condensed, Reference};
+use crate::condense::blocks::condensed::{AssembledLaw, Condensed, CondensedContacts, CondensedWave, Reference};
 use crate::condense::blocks::contact_classes::ContactClasses;
 use crate::condense::blocks::flexibility_way::FlexibilityWay;
 use crate::condense::blocks::memory_limit::within_for_contacts;
@@ -77,14 +77,14 @@ impl Condensed {
                 let mut force = try_vec(n, Complex64::ZERO, "the forces")?;
                 model.add_forces_to(block.number, 1.0 / unit, &mut force);
                 let force = view.force(&force)?;
-                block.force[..force.len()].copy_from_slice(&force);
+                block.load.force[..force.len()].copy_from_slice(&force);
                 continue;
             }
-            model.add_forces_to(block.number, 1.0 / unit, &mut block.force);
+            model.add_forces_to(block.number, 1.0 / unit, &mut block.load.force);
             if model.excitation().has_unbalance_in(block.number) {
-                let mut unbalance = try_vec(block.force.len(), Complex64::ZERO, "the forces")?;
+                let mut unbalance = try_vec(block.load.force.len(), Complex64::ZERO, "the forces")?;
                 model.add_unbalance_to(block.number, 1.0 / unit, &mut unbalance);
-                block.unbalance = Some(unbalance);
+                block.load.unbalance = Some(unbalance);
             }
         }
         let mut workspace = Workspace::new(&condensed, None)?;
@@ -98,7 +98,12 @@ impl Condensed {
         condensed.set_exchanges(sweep, interrupt)?;
         let scale = power_of_two(motion);
         for block in &mut condensed.blocks {
-            for f in block.force.iter_mut().chain(block.unbalance.iter_mut().flatten()) {
+            for f in block
+                .load
+                .force
+                .iter_mut()
+                .chain(block.load.unbalance.iter_mut().flatten())
+            {
                 *f /= scale;
             }
         }
@@ -114,7 +119,7 @@ impl Condensed {
         // The small motion of a near-rigid contact is lost in the rounding of modes.
         let is_near_rigid = (0..self.coordinates()).any(|c| self.is_near_rigid(c));
         for i in 0..self.blocks.len() {
-            if self.tuned.is_some() {
+            if self.wave.tuned.is_some() {
                 self.blocks[i].without_source = FlexibilityWay::TunedWheel;
                 continue;
             }
@@ -166,7 +171,7 @@ impl Condensed {
             motion = contact.slider().iter().fold(motion, |m, place| m.max(place.abs()));
         }
         let length = power_of_two(motion);
-        for f in condensed.blocks.iter_mut().flat_map(|block| &mut block.force) {
+        for f in condensed.blocks.iter_mut().flat_map(|block| &mut block.load.force) {
             *f /= length;
         }
         condensed.set_length(model, length, &assembled)?;
@@ -176,7 +181,7 @@ impl Condensed {
     /// Adds the constant forces of a model, scaled by the unit `length`.
     fn add_constant_forces(&mut self, model: &Model, length: f64) {
         for block in self.blocks.iter_mut().filter(|b| b.number == 0) {
-            model.add_forces_to(0, 1.0 / length, &mut block.force);
+            model.add_forces_to(0, 1.0 / length, &mut block.load.force);
         }
     }
 
@@ -204,7 +209,7 @@ impl Condensed {
             interrupt,
         )?;
         let fundamental = condensed.blocks.iter().find(|b| b.number == 1);
-        let rows = fundamental.map_or(&[][..], |b| &b.rows);
+        let rows = fundamental.map_or(&[][..], |b| &b.motions.rows);
         let motion = rows.iter().fold(0.0_f64, |m, row| m.max(row.along(shape).norm()));
         let length = power_of_two(motion);
         if loaded {
@@ -227,20 +232,24 @@ impl Condensed {
             certificate: 0.0,
             length: 1.0,
             blocks: Vec::new(),
-            laws: Arc::default(),
-            stiffness: Vec::new(),
-            resistance: Vec::new(),
-            reference_stiffness: Vec::new(),
-            exchanges: Vec::new(),
-            can_stick: Vec::new(),
-            preloaded: false,
+            contacts: CondensedContacts {
+                laws: Arc::default(),
+                stiffness: Vec::new(),
+                resistance: Vec::new(),
+                reference_stiffness: Vec::new(),
+                exchanges: Vec::new(),
+                can_stick: Vec::new(),
+                preloaded: false,
+                share: Vec::new(),
+                classes: ContactClasses::new(model)?,
+            },
             reference: Reference::Complex,
-            share: Vec::new(),
-            contact_classes: ContactClasses::new(model)?,
-            sectors: model.structure().sectors(),
-            in_step: model.structure().in_step(),
-            wheel: model.structure().whole_wheel(),
-            tuned: None,
+            wave: CondensedWave {
+                sectors: model.structure().sectors(),
+                in_step: model.structure().in_step(),
+                wheel: model.structure().whole_wheel(),
+                tuned: None,
+            },
             refinement: 1,
         })
     }
@@ -326,25 +335,29 @@ impl Condensed {
             degrees: model.structure().degrees().clone(),
             order: blocks
                 .first()
-                .map_or(model.structure().ndof(), |block| block.reference.rows),
+                .map_or(model.structure().ndof(), |block| block.matrices.reference.rows),
             structure: is_reduced.then(|| model.structure().clone()),
             certificate,
             length: 1.0,
             blocks,
-            laws: Arc::default(),
-            stiffness,
-            resistance,
-            reference_stiffness,
-            exchanges,
-            can_stick,
-            preloaded: model.contacts().iter().any(Contact::is_preloaded),
+            contacts: CondensedContacts {
+                laws: Arc::default(),
+                stiffness,
+                resistance,
+                reference_stiffness,
+                exchanges,
+                can_stick,
+                preloaded: model.contacts().iter().any(Contact::is_preloaded),
+                share,
+                classes: contact_classes,
+            },
             reference,
-            share,
-            contact_classes,
-            sectors: model.structure().sectors(),
-            in_step: model.structure().in_step(),
-            wheel: model.structure().whole_wheel(),
-            tuned,
+            wave: CondensedWave {
+                sectors: model.structure().sectors(),
+                in_step: model.structure().in_step(),
+                wheel: model.structure().whole_wheel(),
+                tuned,
+            },
             refinement: options.refinement,
         };
         Ok((condensed, assembled))
@@ -362,7 +375,7 @@ impl Condensed {
                 try_push(&mut coordinates, at.coordinate, CONTEXT)?;
             }
             let contact = one[0].contact;
-            let exchange = self.exchanges[one[0].coordinate];
+            let exchange = self.contacts.exchanges[one[0].coordinate];
             let base = self.set.base() as f64;
             let exchanged = exchange.and_then(|e| {
                 let late = e.mass_at.map(|omega| base * omega / e.ring);
@@ -383,7 +396,7 @@ impl Condensed {
             };
             laws.push(assembled);
         }
-        self.laws = Arc::new(laws);
+        self.contacts.laws = Arc::new(laws);
         Ok(())
     }
 }

@@ -46,14 +46,7 @@ const BEYOND_FACTORS: f64 = 10.0;
 pub struct FrequencyCache {
     workspace: Workspace,
     current: Vec<Table>,
-    /// Per harmonic the table from modes or poles, where it is used.
-    modal: Vec<Option<ModalTable>>,
-    /// Work space of the tables from modes: one for all, or one for each where slopes along a motion follow.
-    modal_work: Vec<ModalWork>,
-    /// Tables of all harmonics computed together, where each is from modes of a single contact.
-    lanes: Option<SingleContactLanes>,
-    /// Whether the tables from modes have slopes.
-    modal_slopes: bool,
+    of_modes: ModalTables,
     /// Whether a sweep uses tables that are not made by factorisation.
     is_quicker: bool,
     /// How the table of the lowest vibrating harmonic is made along a sweep, as reported to the caller.
@@ -69,6 +62,18 @@ pub struct FrequencyCache {
     /// Frequency of the current tables, how they were made, and whether they have the columns of the contacts.
     tabulated: Option<(f64, Way, bool)>,
     way: Way,
+}
+
+/// Tables from modes.
+pub struct ModalTables {
+    /// Per harmonic the table from modes or poles, where it is used.
+    tables: Vec<Option<ModalTable>>,
+    /// Work space of the tables from modes: one for all, or one for each where slopes along a motion follow.
+    work: Vec<ModalWork>,
+    /// Tables of all harmonics computed together, where each is from modes of a single contact.
+    lanes: Option<SingleContactLanes>,
+    /// Whether the tables from modes have slopes.
+    slopes: bool,
 }
 
 /// How tables are made at a frequency.
@@ -128,10 +133,12 @@ impl FrequencyCache {
         Ok(Self {
             workspace,
             current: tables,
-            lanes: SingleContactLanes::new(&modal)?,
-            modal,
-            modal_work,
-            modal_slopes: true,
+            of_modes: ModalTables {
+                lanes: SingleContactLanes::new(&modal)?,
+                tables: modal,
+                work: modal_work,
+                slopes: true,
+            },
             is_quicker,
             told: told.unwrap_or_default(),
             is_stiff,
@@ -169,15 +176,15 @@ impl FrequencyCache {
 
     /// Uses the given tables from modes, without slopes, as exactly as an error estimate needs them.
     pub fn set_modes(&mut self, modal: Vec<Option<ModalTable>>) {
-        self.modal = modal;
-        self.lanes = None;
-        self.modal_slopes = false;
+        self.of_modes.tables = modal;
+        self.of_modes.lanes = None;
+        self.of_modes.slopes = false;
         self.tabulated = None;
     }
 
     /// Whether tables are made from modes for an error estimate.
     pub fn has_modes(&self) -> bool {
-        !self.modal_slopes
+        !self.of_modes.slopes
     }
 
     /// The tables made last.
@@ -216,8 +223,8 @@ impl FrequencyCache {
         let Some((omega, ..)) = self.tabulated.filter(|_| self.lacks_slopes[i]) else {
             return Ok(());
         };
-        if let Some(Some(modal)) = self.modal.get(i).filter(|_| self.is_modal[i]) {
-            modal.slope_along(omega, &mut self.modal_work[i], contact_force, change);
+        if let Some(Some(modal)) = self.of_modes.tables.get(i).filter(|_| self.is_modal[i]) {
+            modal.slope_along(omega, &mut self.of_modes.work[i], contact_force, change);
             return Ok(());
         }
         self.workspace
@@ -253,7 +260,7 @@ impl FrequencyCache {
             return self.tabulate_excited(condensed, omega, interrupt);
         }
         if self.way == Way::Quick
-            && let Some(lanes) = &self.lanes
+            && let Some(lanes) = &self.of_modes.lanes
             && lanes.evaluate(omega, &mut self.current)
         {
             if condensed.has_exchanges() {
@@ -265,8 +272,8 @@ impl FrequencyCache {
             return Ok(());
         }
         let may_lack = !condensed.has_exchanges();
-        let keeps = self.modal_slopes && has_slopes_along(condensed);
-        let of_modes = self.modal_slopes && !keeps;
+        let keeps = self.of_modes.slopes && has_slopes_along(condensed);
+        let of_modes = self.of_modes.slopes && !keeps;
         let exactly = self.takes_factors(condensed);
         let workspace = &mut self.workspace;
         for (i, table) in self.current.iter_mut().enumerate() {
@@ -274,8 +281,8 @@ impl FrequencyCache {
                 continue;
             }
             let block = &condensed.blocks()[i];
-            if let Some(Some(modal)) = self.modal.get(i).filter(|_| !exactly)
-                && let work = &mut self.modal_work[if keeps { i } else { 0 }]
+            if let Some(Some(modal)) = self.of_modes.tables.get(i).filter(|_| !exactly)
+                && let work = &mut self.of_modes.work[if keeps { i } else { 0 }]
                 && modal.evaluate((omega, of_modes), work, table, interrupt)?
             {
                 (self.lacks_slopes[i], self.is_modal[i]) = (keeps, true);
@@ -284,7 +291,8 @@ impl FrequencyCache {
             }
             interrupt.check()?;
             // A derived clone_from would allocate at each frequency.
-            let slopes = self.way != Way::Pointwise || matches!(self.modal.get(i), Some(Some(_)) if self.modal_slopes);
+            let slopes = self.way != Way::Pointwise
+                || matches!(self.of_modes.tables.get(i), Some(Some(_)) if self.of_modes.slopes);
             let slopes = match slopes {
                 false => Slopes::None,
                 true if may_lack && (condensed.coordinates() > ALL_SLOPES_UP_TO || condensed.tuned().is_some()) => {
@@ -296,7 +304,7 @@ impl FrequencyCache {
             workspace.tabulate(condensed, (i, omega), slopes, interrupt)?;
             workspace.exchange_table(table);
             condensed.exchange(i, omega, table);
-            self.constant[i] = block.number == 0 && block.tied.is_none();
+            self.constant[i] = block.number == 0 && block.matrices.tied.is_none();
         }
         self.tabulated = Some((omega, self.way, true));
         Ok(())
@@ -305,7 +313,7 @@ impl FrequencyCache {
     /// Whether tables are made by factorisation where sums are possible. A large structure takes sums where a small
     /// one is factorised: they have as many digits, and cost less.
     fn takes_factors(&self, condensed: &Condensed) -> bool {
-        self.modal_slopes && self.way != Way::Quick && condensed.ndof() <= FACTORISED_UP_TO && !self.is_stiff
+        self.of_modes.slopes && self.way != Way::Quick && condensed.ndof() <= FACTORISED_UP_TO && !self.is_stiff
     }
 
     /// Makes the tables with the column of the excitation alone: by sums where these are accurate, else by
@@ -318,8 +326,8 @@ impl FrequencyCache {
             }
             interrupt.check()?;
             (self.lacks_slopes[i], self.is_modal[i]) = (false, false);
-            if let Some(Some(modal)) = self.modal.get(i).filter(|_| !exactly)
-                && modal.evaluate_excited(omega, &mut self.modal_work[0], table, interrupt)?
+            if let Some(Some(modal)) = self.of_modes.tables.get(i).filter(|_| !exactly)
+                && modal.evaluate_excited(omega, &mut self.of_modes.work[0], table, interrupt)?
             {
                 continue;
             }

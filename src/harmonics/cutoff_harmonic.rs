@@ -294,11 +294,11 @@ fn highest_frequency(condensed: &Condensed, interrupt: &Interrupt<'_>) -> Result
     for block in condensed.blocks().iter().take(2 * condensed.in_step() + 1) {
         let mut k = DMatrix::<Complex64>::zeros(n, n);
         let mut m = DMatrix::<Complex64>::zeros(n, n);
-        let pattern = &block.reference;
+        let pattern = &block.matrices.reference;
         for j in 0..n {
             for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
-                k[(pattern.row_idx[at], j)] = block.stiffness[at];
-                m[(pattern.row_idx[at], j)] = block.mass[at];
+                k[(pattern.row_idx[at], j)] = block.matrices.stiffness[at];
+                m[(pattern.row_idx[at], j)] = block.matrices.mass[at];
             }
         }
         if (&k - k.adjoint()).norm() > 1e-9 * k.norm() {

@@ -60,6 +60,11 @@ pub(super) struct ExtendedSystem<P> {
     goal: f64,
     sizes: Sizes,
     work: Work,
+    vectors: ExtendedVectors,
+}
+
+/// Memory of a step.
+pub(super) struct ExtendedVectors {
     /// Border of a fixed parameter: no column, and the row (0, …, 0, 1).
     column: Vec<f64>,
     row: Vec<f64>,
@@ -102,9 +107,11 @@ impl<P: Problem> ExtendedSystem<P> {
             goal: 0.0,
             sizes,
             work,
-            column: try_vec(n, 0.0, CONTEXT)?,
-            row,
-            b: try_vec(n + 1, 0.0, CONTEXT)?,
+            vectors: ExtendedVectors {
+                column: try_vec(n, 0.0, CONTEXT)?,
+                row,
+                b: try_vec(n + 1, 0.0, CONTEXT)?,
+            },
         })
     }
 
@@ -131,9 +138,9 @@ impl<P: Problem> ExtendedSystem<P> {
             return Ok(false);
         }
         let border = Border {
-            column: &self.column,
+            column: &self.vectors.column,
             scales: (1.0, 1.0),
-            row: &self.row,
+            row: &self.vectors.row,
         };
         self.system.update(&mut self.problem, border, interrupt)?;
         match self.system.factor(&mut self.problem, interrupt) {
@@ -173,15 +180,15 @@ impl<P: Problem> ExtendedSystem<P> {
         let each = self.of_product();
         let most = (self.work.left() / each) as usize;
         self.system.limit_products(most.min(EXTENDED_SYSTEM_MOST_PRODUCTS));
-        for (b, r) in self.b.iter_mut().zip(&self.at.values) {
+        for (b, r) in self.vectors.b.iter_mut().zip(&self.at.values) {
             *b = -r;
         }
-        self.b[n] = 0.0;
+        self.vectors.b[n] = 0.0;
         let solved = self
             .system
-            .solve(&mut self.problem, tolerance, &mut self.b, interrupt)?;
+            .solve(&mut self.problem, tolerance, &mut self.vectors.b, interrupt)?;
         self.stalled |= !solved && most >= EXTENDED_SYSTEM_MOST_PRODUCTS;
-        step.copy_from_slice(&self.b[..n]);
+        step.copy_from_slice(&self.vectors.b[..n]);
         Ok(self.work.spend(each * self.system.products() as f64) && solved)
     }
 
@@ -191,12 +198,15 @@ impl<P: Problem> ExtendedSystem<P> {
         let each = self.of_product();
         self.system
             .limit_products(((self.work.left() / each) as usize).min(EXTENDED_SYSTEM_MOST_PRODUCTS));
-        self.b[..n].copy_from_slice(b);
-        self.b[n] = 0.0;
-        let solved = self
-            .system
-            .solve(&mut self.problem, EXTENDED_SYSTEM_COARSEST, &mut self.b, interrupt)?;
-        x.copy_from_slice(&self.b[..n]);
+        self.vectors.b[..n].copy_from_slice(b);
+        self.vectors.b[n] = 0.0;
+        let solved = self.system.solve(
+            &mut self.problem,
+            EXTENDED_SYSTEM_COARSEST,
+            &mut self.vectors.b,
+            interrupt,
+        )?;
+        x.copy_from_slice(&self.vectors.b[..n]);
         Ok(self.work.spend(each * self.system.products() as f64) && solved)
     }
 

@@ -66,31 +66,46 @@ pub(super) fn tables_within(tolerance: f64) -> f64 {
 pub struct ForcedEstimator<'a> {
     model: &'a Model,
     options: SolverOptions,
-    response: usize,
+    asked: Asked<'a>,
     cutoff: Option<CutoffHarmonic>,
     models: &'a ModelCache,
     interrupt: &'a Interrupt<'a>,
-    /// Whether all points have one frequency, so that no extended problem is kept.
-    single: bool,
     /// Whether some estimate told nothing, for want of work.
     told_nothing: bool,
     /// Extended problems of the last estimates, with their slots in the cache.
     extended: Vec<(usize, Box<ExtendedSystem<HarmonicBalance<'a>>>)>,
+    judged: Judged,
+    shared: Shared<'a>,
+    /// Whether the estimate at hand is a second one.
+    second: SecondEstimate,
+}
+
+/// The response whose error is wanted, and where.
+pub struct Asked<'a> {
+    response: usize,
+    /// Range of the frequencies of the points.
+    range: Option<Range>,
+    /// Whether all points have one frequency, so that no extended problem is kept.
+    single: bool,
+    /// The requested responses.
+    responses: &'a [Response<'a>],
+}
+
+/// What earlier estimates told.
+pub struct Judged {
     ratio: KeptRatio,
     changes: KeptChanges,
     /// Operations that the last estimate was allowed, and the limit for the next one.
     allowed: f64,
     most: f64,
+}
+
+/// Modes that estimates share with the response.
+pub struct Shared<'a> {
     /// Modes of the waves; and the number of flexibility tables made so far.
     waves: &'a SharedWaves,
     rows: Vec<Arc<ModalRows>>,
     tables: usize,
-    /// Whether the estimate at hand is a second one.
-    second: SecondEstimate,
-    /// Range of the frequencies of the points.
-    range: Option<Range>,
-    /// The requested responses.
-    responses: &'a [Response<'a>],
 }
 
 impl<'a> ForcedEstimator<'a> {
@@ -106,43 +121,49 @@ impl<'a> ForcedEstimator<'a> {
         Self {
             model,
             options: *options,
-            response,
+            asked: Asked {
+                response,
+                range: None,
+                single: false,
+                responses: &[],
+            },
             cutoff: None,
             models,
             interrupt,
-            single: false,
             told_nothing: false,
             extended: Vec::new(),
-            ratio: KeptRatio::default(),
-            changes: KeptChanges::default(),
-            allowed: 0.0,
-            most: f64::INFINITY,
-            waves,
-            rows: Vec::new(),
-            tables: 0,
+            judged: Judged {
+                ratio: KeptRatio::default(),
+                changes: KeptChanges::default(),
+                allowed: 0.0,
+                most: f64::INFINITY,
+            },
+            shared: Shared {
+                waves,
+                rows: Vec::new(),
+                tables: 0,
+            },
             second: SecondEstimate::default(),
-            range: None,
-            responses: &[],
         }
     }
 
     /// Adds requested responses, whose errors then count.
     pub fn watching(mut self, responses: &'a [Response<'a>]) -> Self {
-        self.responses = responses;
+        self.asked.responses = responses;
         self
     }
 
     /// Sets the range of frequency of the points. For a single frequency no extended problem is kept.
     #[must_use]
     pub fn over(mut self, range: Range) -> Self {
-        self.single = range.is_single();
-        self.range = (!self.single).then_some(range);
+        self.asked.single = range.is_single();
+        self.asked.range = (!self.asked.single).then_some(range);
         self
     }
 
     /// Limits the next estimate to half of the work that was allowed to the last one, which told nothing.
     pub fn share_work(&mut self) {
-        self.most = SHARED * self.allowed;
+        self.judged.most = SHARED * self.judged.allowed;
     }
 
     /// The estimate at a solved point; not certified if it could not be made.
@@ -155,15 +176,15 @@ impl<'a> ForcedEstimator<'a> {
             return solved.exact(0.0);
         }
         let sizes = Sizes::new(solved.condensed, self.options.samples);
-        let least = match (self.single, self.told_nothing) {
+        let least = match (self.asked.single, self.told_nothing) {
             (false, _) => OF_A_START,
             (true, false) => OF_A_POINT.0,
             (true, true) => OF_A_POINT.1,
         };
         let iterations = self.second.iterations(solved.iterations.max(least));
         let mut work = Work::of_point(&sizes, iterations, self.options.memory_limit);
-        work.limit(core::mem::replace(&mut self.most, f64::INFINITY));
-        self.allowed = work.left();
+        work.limit(core::mem::replace(&mut self.judged.most, f64::INFINITY));
+        self.judged.allowed = work.left();
         let found = self.extend(solved, work);
         let found = or_unknown(found, solved, 0.0)?;
         self.told_nothing |= !found.certified;
@@ -176,12 +197,12 @@ impl<'a> ForcedEstimator<'a> {
     /// # Errors
     /// As [`Self::at`].
     pub fn again(&mut self, solved: &Solved<'_>) -> Result<Option<Estimate>> {
-        if self.single || !self.second.is_due() {
+        if self.asked.single || !self.second.is_due() {
             return Ok(None);
         }
         self.extended.clear();
-        self.changes = KeptChanges::default();
-        self.ratio = KeptRatio::default();
+        self.judged.changes = KeptChanges::default();
+        self.judged.ratio = KeptRatio::default();
         for further in SecondEstimate::ALL {
             self.second.begin(further);
             let found = self.at(solved);
@@ -357,7 +378,7 @@ impl<'a> ForcedEstimator<'a> {
             if highest >= extent.core && !extent.short {
                 return Ok(Some(found));
             }
-            if let Some((ratio, sure)) = self.ratio.at(extent.least).filter(|_| last.is_none()) {
+            if let Some((ratio, sure)) = self.judged.ratio.at(extent.least).filter(|_| last.is_none()) {
                 let scaled = series.scaled(ratio);
                 if scaled <= sure * self.options.tolerance {
                     found.scale_response(scaled);
@@ -366,7 +387,7 @@ impl<'a> ForcedEstimator<'a> {
             }
             if series.is_harmless(self.options.tolerance) {
                 if let Some(ratio) = series.bounded_ratio() {
-                    self.ratio.note(extent.least, ratio);
+                    self.judged.ratio.note(extent.least, ratio);
                 }
                 return Ok(Some(series.bounded(found)));
             }
@@ -374,7 +395,7 @@ impl<'a> ForcedEstimator<'a> {
             let next = if extent.short { next } else { next.min(extent.highest) };
             let ends = next > self.affordable(solved, &work, next);
             if series.has_settled() || (ends && series.suffices()) {
-                self.ratio.note(extent.least, series.ratio());
+                self.judged.ratio.note(extent.least, series.ratio());
                 return Ok(Some(series.completed(found)));
             }
             if ends {
@@ -390,15 +411,15 @@ impl<'a> ForcedEstimator<'a> {
 
     /// Whether sums over modes pay: modes are known, or many tables were made.
     fn modes_pay(&mut self, condensed: &Condensed) -> bool {
-        self.tables += condensed.set().numbers().len();
+        self.shared.tables += condensed.set().numbers().len();
         // Factors of a sparse matrix cost less, modes do not.
         let n = condensed.ndof();
         let stored = condensed
             .blocks()
             .first()
-            .map_or(1, |block| block.reference.values.len());
-        let pay = self.tables > FORCED_RESPONSE_ERROR_TABLES * (n * n / stored.max(1));
-        match self.waves.some_have_modes() {
+            .map_or(1, |block| block.matrices.reference.values.len());
+        let pay = self.shared.tables > FORCED_RESPONSE_ERROR_TABLES * (n * n / stored.max(1));
+        match self.shared.waves.some_have_modes() {
             // Few small factorisations cost no more.
             Some(known) => known && (pay || condensed.ndof() > FORCED_RESPONSE_ERROR_SMALL),
             None => pay,
@@ -411,15 +432,15 @@ impl<'a> ForcedEstimator<'a> {
         let blocks = condensed.blocks();
         for (i, block) in blocks.iter().enumerate() {
             let known = blocks[..i].iter().position(|known| known.shares_matrices(block));
-            let of_earlier = || self.rows.iter().find(|rows| rows.are_of_block(block));
+            let of_earlier = || self.shared.rows.iter().find(|rows| rows.are_of_block(block));
             let rows = match known.and_then(|known| tables[known].as_ref()) {
                 Some(table) => Some(table.rows()),
                 None if let Some(rows) = of_earlier() => Some(Arc::clone(rows)),
-                None => match self.waves.of(self.model, condensed, i, self.interrupt)? {
+                None => match self.shared.waves.of(self.model, condensed, i, self.interrupt)? {
                     Ok(modes) => {
-                        let rows = self.waves.rows((condensed, i, self.response), modes)?;
-                        if !self.rows.iter().any(|known| Arc::ptr_eq(known, &rows)) {
-                            try_push(&mut self.rows, Arc::clone(&rows), CONTEXT)?;
+                        let rows = self.shared.waves.rows((condensed, i, self.asked.response), modes)?;
+                        if !self.shared.rows.iter().any(|known| Arc::ptr_eq(known, &rows)) {
+                            try_push(&mut self.shared.rows, Arc::clone(&rows), CONTEXT)?;
                         }
                         Some(rows)
                     }
@@ -451,7 +472,7 @@ impl<'a> ForcedEstimator<'a> {
                 condensed
             } else {
                 // One scale for all points, so that they share tables of one unit.
-                let Range { start, stop } = self.range.unwrap_or(solved.omega.into());
+                let Range { start, stop } = self.asked.range.unwrap_or(solved.omega.into());
                 // Exchanged motions are those of the whole range.
                 let stop = if solved.condensed.has_exchanges() { stop } else { start };
                 Condensed::new(self.model, &options, (start, stop), self.interrupt)?
@@ -505,9 +526,9 @@ impl<'a> ForcedEstimator<'a> {
             system
         } else {
             let range = omega.into();
-            let (response, samples, interrupt) = (self.response, resolution.samples, self.interrupt);
+            let (response, samples, interrupt) = (self.asked.response, resolution.samples, self.interrupt);
             let mut problem = boxed(|| HarmonicBalance::new(condensed, response, range, samples, None, interrupt))?;
-            problem.watch((self.responses, response), samples)?;
+            problem.watch((self.asked.responses, response), samples)?;
             boxed(|| ExtendedSystem::iterative(*problem, omega, factored, (sizes, work)))?
         };
         system.is_monotone = condensed.has_exchanges();
@@ -522,7 +543,7 @@ impl<'a> ForcedEstimator<'a> {
             let kept = (changes, tolerances);
             extend_once(system, condensed, (solved, from), (extent, slot), kept, interrupt)
         };
-        let mut found = run(&mut system, &mut self.changes);
+        let mut found = run(&mut system, &mut self.judged.changes);
         let mut left = system.work();
         if system.stalled
             && !stalled
@@ -530,7 +551,7 @@ impl<'a> ForcedEstimator<'a> {
         {
             self.forget_beside(slot, sizes.bytes(sizes.packed(), 0.0), &left);
             system.set_point(omega, all, left)?;
-            found = run(&mut system, &mut self.changes);
+            found = run(&mut system, &mut self.judged.changes);
             left = system.work();
         }
         if self.extended.len() == FORCED_RESPONSE_ERROR_MOST_KEPT {
@@ -543,7 +564,7 @@ impl<'a> ForcedEstimator<'a> {
     /// Drops the oldest extended problems that do not fit into the memory of an estimate together with one of
     /// `of_slot` bytes in a slot.
     fn forget_beside(&mut self, slot: usize, of_slot: f64, work: &Work) {
-        if self.single {
+        if self.asked.single {
             self.extended.retain(|(kept, _)| *kept == slot);
         }
         let bytes = |(kept, system): &(usize, Box<ExtendedSystem<HarmonicBalance<'a>>>)| {

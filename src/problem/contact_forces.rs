@@ -24,6 +24,14 @@ pub struct ContactForces<'a> {
     evaluator: Box<Evaluator>,
     /// A second evaluator of the laws with another number of samples, if some law is sampled.
     other: Option<Box<Evaluator>>,
+    static_part: StaticPart,
+    memory: ForceMemory,
+    result: ForceResult,
+    told: ContactStates,
+}
+
+/// What contacts feel at rest, and how much of it.
+pub struct StaticPart {
     /// Scale factor s: every law f(y) is replaced by s·f(y/s).
     factor: f64,
     /// Static motion per coordinate, and packed static forces, from which motions and forces are counted; empty if
@@ -34,6 +42,10 @@ pub struct ContactForces<'a> {
     tangents: Vec<f64>,
     /// Weight α of the laws in α f + (1 − α) T y, where T are their tangents; `None`: the laws alone.
     share: Option<f64>,
+}
+
+/// Memory of an evaluation.
+pub struct ForceMemory {
     /// Scaled motions y/s of all coordinates; and the motions of one law.
     scaled: Vec<f64>,
     gathered: Vec<f64>,
@@ -41,11 +53,19 @@ pub struct ContactForces<'a> {
     checked: Vec<f64>,
     /// Per number of directions (1, 2, …), memory for the evaluation of a law, where such laws exist.
     found: Vec<Option<Evaluation>>,
+}
+
+/// Forces of the point evaluated last, and their derivatives.
+pub struct ForceResult {
     /// Packed forces summed per coordinate.
     force: Vec<f64>,
     offset: Vec<f64>,
     by_omega: Vec<f64>,
     jacobians: Blocks,
+}
+
+/// States of contacts at the point evaluated last.
+pub struct ContactStates {
     /// Whether all laws stick.
     all_stuck: bool,
     /// Whether the forces of all laws are affine functions of the motion.
@@ -130,27 +150,35 @@ impl<'a> ContactForces<'a> {
             interrupt,
             evaluator,
             other: None,
-            factor: 1.0,
-            rest: Vec::new(),
-            rest_force: Vec::new(),
-            tangents: Vec::new(),
-            share: None,
-            scaled: try_vec(size, 0.0, CONTEXT)?,
-            gathered: try_vec(most.saturating_mul(m), 0.0, CONTEXT)?,
-            checked: try_vec(most.saturating_mul(m), 0.0, CONTEXT)?,
-            found,
-            force: try_vec(size, 0.0, CONTEXT)?,
-            offset: try_vec(size, 0.0, CONTEXT)?,
-            by_omega: try_vec(size, 0.0, CONTEXT)?,
-            jacobians: Blocks::new(condensed, if alone { 0 } else { m })?,
-            all_stuck: false,
-            all_linear: false,
-            linear: try_vec(condensed.coordinates(), false, CONTEXT)?,
-            inactive: try_vec(condensed.coordinates(), false, CONTEXT)?,
-            slip_fractions: try_vec(condensed.laws().len(), 0.0, CONTEXT)?,
-            open_fractions: try_vec(condensed.laws().len(), 0.0, CONTEXT)?,
-            presses: Vec::new(),
-            rounding: try_vec(condensed.coordinates(), 0.0, CONTEXT)?,
+            static_part: StaticPart {
+                factor: 1.0,
+                rest: Vec::new(),
+                rest_force: Vec::new(),
+                tangents: Vec::new(),
+                share: None,
+            },
+            memory: ForceMemory {
+                scaled: try_vec(size, 0.0, CONTEXT)?,
+                gathered: try_vec(most.saturating_mul(m), 0.0, CONTEXT)?,
+                checked: try_vec(most.saturating_mul(m), 0.0, CONTEXT)?,
+                found,
+            },
+            result: ForceResult {
+                force: try_vec(size, 0.0, CONTEXT)?,
+                offset: try_vec(size, 0.0, CONTEXT)?,
+                by_omega: try_vec(size, 0.0, CONTEXT)?,
+                jacobians: Blocks::new(condensed, if alone { 0 } else { m })?,
+            },
+            told: ContactStates {
+                all_stuck: false,
+                all_linear: false,
+                linear: try_vec(condensed.coordinates(), false, CONTEXT)?,
+                inactive: try_vec(condensed.coordinates(), false, CONTEXT)?,
+                slip_fractions: try_vec(condensed.laws().len(), 0.0, CONTEXT)?,
+                open_fractions: try_vec(condensed.laws().len(), 0.0, CONTEXT)?,
+                presses: Vec::new(),
+                rounding: try_vec(condensed.coordinates(), 0.0, CONTEXT)?,
+            },
         })
     }
 
@@ -165,7 +193,7 @@ impl<'a> ContactForces<'a> {
     /// linearised at small motion (infinite: exactly linear springs); 1 selects the laws themselves; between them
     /// runs the homotopy that finds a first point.
     pub fn set_scale(&mut self, factor: f64) {
-        self.factor = factor;
+        self.static_part.factor = factor;
     }
 
     /// Counts motions and forces from a static state, in the unit of the condensed model, whose laws are evaluated at
@@ -175,21 +203,21 @@ impl<'a> ContactForces<'a> {
     /// `OutOfMemory`; those of callbacks; `StoppedByCaller`.
     pub fn set_rest(&mut self, state: &StaticState, omega: f64) -> Result<()> {
         const CONTEXT: &str = "the static state";
-        let still = try_vec(self.force.len(), 0.0, CONTEXT)?;
-        self.rest_force = try_vec(self.force.len(), 0.0, CONTEXT)?;
-        self.rest = try_copy(&state.motion, CONTEXT)?;
+        let still = try_vec(self.result.force.len(), 0.0, CONTEXT)?;
+        self.static_part.rest_force = try_vec(self.result.force.len(), 0.0, CONTEXT)?;
+        self.static_part.rest = try_copy(&state.motion, CONTEXT)?;
         for assembled in self.condensed.laws() {
             let d = assembled.law.directions();
             for k in 0..d * d {
                 let stiffness = state.tangents.stiffness(assembled.contact, k / d, k % d);
-                try_push(&mut self.tangents, stiffness.unwrap_or(0.0), CONTEXT)?;
+                try_push(&mut self.static_part.tangents, stiffness.unwrap_or(0.0), CONTEXT)?;
             }
         }
         self.set_scale(1.0);
         self.evaluate(&still, omega)?;
-        self.rest_force.copy_from_slice(&self.force);
-        for open in &self.open_fractions {
-            try_push(&mut self.presses, *open == 0.0, CONTEXT)?;
+        self.static_part.rest_force.copy_from_slice(&self.result.force);
+        for open in &self.told.open_fractions {
+            try_push(&mut self.told.presses, *open == 0.0, CONTEXT)?;
         }
         Ok(())
     }
@@ -197,7 +225,7 @@ impl<'a> ContactForces<'a> {
     /// Replaces all laws f by α f + (1 − α) T y with their tangents T at the static motion, `share` = α; `None`: the
     /// laws themselves. [`Self::d_ln_scale`] is then the derivative by α.
     pub fn set_share(&mut self, share: Option<f64>) {
-        self.share = share;
+        self.static_part.share = share;
     }
 
     /// Evaluates all laws at packed motions, coordinate after coordinate, and an angular frequency.
@@ -207,22 +235,26 @@ impl<'a> ContactForces<'a> {
     pub fn evaluate(&mut self, motion: &[f64], omega: f64) -> Result<()> {
         let set = self.condensed.set();
         let m = set.packed_len();
-        for sum in [&mut self.force, &mut self.offset, &mut self.by_omega] {
+        for sum in [
+            &mut self.result.force,
+            &mut self.result.offset,
+            &mut self.result.by_omega,
+        ] {
             sum.fill(0.0);
         }
-        self.jacobians.clear();
-        self.all_stuck = true;
-        self.all_linear = true;
-        self.linear.fill(true);
-        self.inactive.fill(true);
-        self.rounding.fill(0.0);
-        let s = self.factor;
+        self.result.jacobians.clear();
+        self.told.all_stuck = true;
+        self.told.all_linear = true;
+        self.told.linear.fill(true);
+        self.told.inactive.fill(true);
+        self.told.rounding.fill(0.0);
+        let s = self.static_part.factor;
         // Forces that scale with the motion; at rest they follow from the Jacobians.
         let unit = if s.is_infinite() { 0.0 } else { s };
-        for (scaled, y) in self.scaled.iter_mut().zip(motion) {
+        for (scaled, y) in self.memory.scaled.iter_mut().zip(motion) {
             *scaled = y / s;
         }
-        for (scaled, rest) in self.scaled.iter_mut().step_by(m).zip(&self.rest) {
+        for (scaled, rest) in self.memory.scaled.iter_mut().step_by(m).zip(&self.static_part.rest) {
             *scaled += rest;
         }
         let mut blocks = 0;
@@ -230,11 +262,11 @@ impl<'a> ContactForces<'a> {
         for (k, assembled) in self.condensed.laws().iter().enumerate() {
             self.interrupt.check()?;
             let at = &assembled.coordinates;
-            let Some(found) = self.found.get_mut(at.len() - 1).and_then(Option::as_mut) else {
+            let Some(found) = self.memory.found.get_mut(at.len() - 1).and_then(Option::as_mut) else {
                 continue;
             };
             let here = assembled.at(omega);
-            let y = gather_scaled(at, (m, here.of_motion), &self.scaled, &mut self.gathered);
+            let y = gather_scaled(at, (m, here.of_motion), &self.memory.scaled, &mut self.memory.gathered);
             if at.len() == 1 && (prepared != at[0] || here.of_motion.is_some()) {
                 self.evaluator.prepare(set, y, self.interrupt)?;
                 prepared = if here.of_motion.is_none() { at[0] } else { usize::MAX };
@@ -245,10 +277,10 @@ impl<'a> ContactForces<'a> {
             if !here.is_plain {
                 apply_load(&here, found);
             }
-            self.slip_fractions[k] = found.slip_fraction;
-            self.open_fractions[k] = found.open_fraction;
-            blocks = self.jacobians.add(blocks, at.len(), &mut found.jacobian);
-            self.all_stuck &= found.stuck;
+            self.told.slip_fractions[k] = found.slip_fraction;
+            self.told.open_fractions[k] = found.open_fraction;
+            blocks = self.result.jacobians.add(blocks, at.len(), &mut found.jacobian);
+            self.told.all_stuck &= found.stuck;
             let closed = 1.0 - found.open_fraction;
             let stuck = (closed - found.slip_fraction).max(0.0);
             // Slip under a load that varies has the rounding of the load.
@@ -260,27 +292,27 @@ impl<'a> ContactForces<'a> {
                 Some(&c) => closed * lost(c),
                 None => 0.0,
             };
-            self.all_linear &= found.linear;
+            self.told.all_linear &= found.linear;
             for (i, &c) in at.iter().enumerate() {
                 let normal = assembled.normal == Some(i);
                 let of_spring = stuck * lost(c);
-                self.rounding[c] = self.rounding[c].max(of_spring + of_load);
-                self.linear[c] &= if normal {
+                self.told.rounding[c] = self.told.rounding[c].max(of_spring + of_load);
+                self.told.linear[c] &= if normal {
                     found.open_fraction == 0.0
                 } else {
                     found.stuck
                 };
-                self.inactive[c] &= found.stuck && !normal;
+                self.told.inactive[c] &= found.stuck && !normal;
                 let (here, law) = (c * m..(c + 1) * m, i * m..(i + 1) * m);
-                add(&mut self.force[here.clone()], &found.force[law.clone()], unit);
-                add(&mut self.offset[here.clone()], &found.offset[law.clone()], unit);
-                add(&mut self.by_omega[here], &found.by_omega[law], unit);
+                add(&mut self.result.force[here.clone()], &found.force[law.clone()], unit);
+                add(&mut self.result.offset[here.clone()], &found.offset[law.clone()], unit);
+                add(&mut self.result.by_omega[here], &found.by_omega[law], unit);
             }
         }
-        if !self.rest.is_empty() {
+        if !self.static_part.rest.is_empty() {
             self.count_from_rest(unit);
         }
-        if let Some(share) = self.share {
+        if let Some(share) = self.static_part.share {
             self.mix_with_tangents(share, motion);
         }
         if s.is_infinite() {
@@ -293,41 +325,48 @@ impl<'a> ContactForces<'a> {
     /// − F₀).
     fn count_from_rest(&mut self, unit: f64) {
         let m = self.condensed.set().packed_len();
-        for (c, rest) in self.rest.iter().enumerate() {
+        for (c, rest) in self.static_part.rest.iter().enumerate() {
             let here = c * m..(c + 1) * m;
-            let of_rest = &self.rest_force[here.clone()];
-            add(&mut self.force[here.clone()], of_rest, -unit);
-            add(&mut self.offset[here.clone()], of_rest, -unit);
-            for (by, block) in self.jacobians.of_force(c) {
-                add(&mut self.offset[here.clone()], &block[..m], unit * self.rest[by]);
+            let of_rest = &self.static_part.rest_force[here.clone()];
+            add(&mut self.result.force[here.clone()], of_rest, -unit);
+            add(&mut self.result.offset[here.clone()], of_rest, -unit);
+            for (by, block) in self.result.jacobians.of_force(c) {
+                add(
+                    &mut self.result.offset[here.clone()],
+                    &block[..m],
+                    unit * self.static_part.rest[by],
+                );
             }
             let size = norm(of_rest) + self.condensed.stiffness(c) * rest.abs();
-            self.rounding[c] += f64::EPSILON * unit * size;
+            self.told.rounding[c] += f64::EPSILON * unit * size;
         }
     }
 
     fn mix_with_tangents(&mut self, share: f64, motion: &[f64]) {
         let m = self.condensed.set().packed_len();
-        self.jacobians.scale(share);
-        for x in &mut self.by_omega {
+        self.result.jacobians.scale(share);
+        for x in &mut self.result.by_omega {
             *x *= share;
         }
-        self.offset.copy_from_slice(&self.force);
-        for x in &mut self.force {
+        self.result.offset.copy_from_slice(&self.result.force);
+        for x in &mut self.result.force {
             *x *= share;
         }
-        let mut tangents = self.tangents.as_slice();
+        let mut tangents = self.static_part.tangents.as_slice();
         let mut blocks = 0;
         for assembled in self.condensed.laws() {
             let at = &assembled.coordinates;
             let (own, others) = tangents.split_at(at.len() * at.len());
             tangents = others;
-            blocks = self.jacobians.add_springs(blocks, at.len(), |k| (1.0 - share) * own[k]);
+            blocks = self
+                .result
+                .jacobians
+                .add_springs(blocks, at.len(), |k| (1.0 - share) * own[k]);
             for (k, &stiffness) in own.iter().enumerate() {
                 let (force, by) = (at[k / at.len()], at[k % at.len()]);
                 let (here, y) = (force * m..(force + 1) * m, &motion[by * m..(by + 1) * m]);
-                add(&mut self.force[here.clone()], y, (1.0 - share) * stiffness);
-                add(&mut self.offset[here], y, -stiffness);
+                add(&mut self.result.force[here.clone()], y, (1.0 - share) * stiffness);
+                add(&mut self.result.offset[here], y, -stiffness);
             }
         }
     }
@@ -335,11 +374,11 @@ impl<'a> ContactForces<'a> {
     /// Sets the forces of the laws linearised at small motion.
     fn linearise(&mut self, motion: &[f64]) {
         let m = self.condensed.set().packed_len();
-        self.offset.fill(0.0);
-        self.by_omega.fill(0.0);
-        for (c, force) in self.force.chunks_exact_mut(m).enumerate() {
+        self.result.offset.fill(0.0);
+        self.result.by_omega.fill(0.0);
+        for (c, force) in self.result.force.chunks_exact_mut(m).enumerate() {
             force.fill(0.0);
-            for (by, block) in self.jacobians.of_force(c) {
+            for (by, block) in self.result.jacobians.of_force(c) {
                 for (column, y) in block.chunks_exact(m).zip(&motion[by * m..]) {
                     add(force, column, *y);
                 }
@@ -350,13 +389,13 @@ impl<'a> ContactForces<'a> {
     /// Share of the period that each law slips.
     #[must_use]
     pub fn slip_fractions(&self) -> &[f64] {
-        &self.slip_fractions
+        &self.told.slip_fractions
     }
 
     /// Least and largest share of the period in which a law slips or is open.
     #[must_use]
     pub fn free_shares(&self) -> (f64, f64) {
-        let shares = self.slip_fractions.iter().zip(&self.open_fractions);
+        let shares = self.told.slip_fractions.iter().zip(&self.told.open_fractions);
         shares.fold((1.0, 0.0), |(least, largest): (f64, f64), (slip, open)| {
             (least.min(slip + open), largest.max(slip + open))
         })
@@ -364,20 +403,20 @@ impl<'a> ContactForces<'a> {
 
     /// Share of the period that each law is open which presses at the static motion.
     pub fn lifted_shares(&self) -> impl Iterator<Item = f64> {
-        let laws = self.open_fractions.iter().zip(&self.presses);
+        let laws = self.told.open_fractions.iter().zip(&self.told.presses);
         laws.filter(|(_, presses)| **presses).map(|(open, _)| *open)
     }
 
     /// Whether every law sticks, or is open, at the motion evaluated last.
     #[must_use]
     pub fn all_stuck(&self) -> bool {
-        self.all_stuck
+        self.told.all_stuck
     }
 
     /// Whether the force of every law is an affine function of the motion near the one evaluated last.
     #[must_use]
     pub fn all_linear(&self) -> bool {
-        self.all_linear
+        self.told.all_linear
     }
 
     /// w = f − κ y of a coordinate in the i-th carried harmonic.
@@ -385,7 +424,7 @@ impl<'a> ContactForces<'a> {
     #[inline]
     pub fn minus_reference(&self, motion: &[f64], coordinate: usize, i: usize) -> Complex64 {
         let kappa = self.condensed.kappa(coordinate, i);
-        self.part(&self.force, coordinate, i) - kappa * self.part(motion, coordinate, i)
+        self.part(&self.result.force, coordinate, i) - kappa * self.part(motion, coordinate, i)
     }
 
     /// Rounding of the force of a coordinate if its contacts are near-rigid, or if it counts from a static one,
@@ -394,20 +433,20 @@ impl<'a> ContactForces<'a> {
     #[must_use]
     #[inline]
     pub fn rounding(&self, coordinate: usize) -> f64 {
-        self.rounding[coordinate]
+        self.told.rounding[coordinate]
     }
 
     /// Packed motions evaluated last, over the scale.
     #[must_use]
     pub fn motion(&self) -> &[f64] {
-        &self.scaled
+        &self.memory.scaled
     }
 
     /// Packed forces, coordinate after coordinate.
     #[must_use]
     #[inline]
     pub fn forces(&self) -> &[f64] {
-        &self.force
+        &self.result.force
     }
 
     /// ∂f/∂ln s of a coordinate in the i-th carried harmonic, where s is the factor of
@@ -415,21 +454,21 @@ impl<'a> ContactForces<'a> {
     #[must_use]
     #[inline]
     pub fn d_ln_scale(&self, coordinate: usize, i: usize) -> Complex64 {
-        self.part(&self.offset, coordinate, i)
+        self.part(&self.result.offset, coordinate, i)
     }
 
     /// ∂f/∂ω, packed, coordinate after coordinate.
     #[must_use]
     #[inline]
     pub fn all_by_omega(&self) -> &[f64] {
-        &self.by_omega
+        &self.result.by_omega
     }
 
     /// ∂f/∂ω of a coordinate in the i-th carried harmonic.
     #[must_use]
     #[inline]
     pub fn by_omega(&self, coordinate: usize, i: usize) -> Complex64 {
-        self.part(&self.by_omega, coordinate, i)
+        self.part(&self.result.by_omega, coordinate, i)
     }
 
     #[inline]

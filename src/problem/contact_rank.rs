@@ -70,7 +70,7 @@ impl Forces for HarmonicBalance<'_> {
     fn subtract_response(&mut self, w: &[f64], u: &mut [f64]) -> Result<()> {
         let set = self.condensed.set();
         let (m, coordinates) = (set.packed_len(), self.condensed.coordinates());
-        let (sum, [z, memory]) = (&mut self.sum[..], &mut self.products.harmonic);
+        let (sum, [z, memory]) = (&mut self.memory.sum[..], &mut self.products.harmonic);
         for (i, table) in self.tables.current().iter().enumerate() {
             let (at, mean) = (set.offset(i), set.numbers()[i] == 0);
             for (z, w) in z.iter_mut().zip(w.chunks_exact(m)) {

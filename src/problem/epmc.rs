@@ -94,6 +94,17 @@ pub struct Epmc<'a> {
     structure: Box<ModeFlexibility>,
     gauge: &'a Gauge,
     linear: &'a LinearMode,
+    memory: ModeMemory,
+    derivatives: ModeDerivatives,
+    products: Box<mode_products::ModeProducts>,
+    /// Unknowns that the caller gave for the first point; `None` without a guess.
+    guess: Option<Vec<f64>>,
+    /// Whether several linear modes share the frequency of this one.
+    is_repeated: bool,
+}
+
+/// Memory of an evaluation.
+pub struct ModeMemory {
     /// Shape x̂ in all carried harmonics at the point last evaluated; and per harmonic, whether it is stored in the
     /// modes of the wave.
     x: Vec<Complex64>,
@@ -104,6 +115,10 @@ pub struct Epmc<'a> {
     w: Vec<Complex64>,
     /// Memory: a packed signal for a column of the Jacobian.
     change: Vec<f64>,
+}
+
+/// Flexibility and derivatives of the equations at the point evaluated last.
+pub struct ModeDerivatives {
     /// Flexibility G of each harmonic, column after column.
     tables: Vec<Vec<Complex64>>,
     /// Flexibility G in the layout of [`ContactForces::couple_all`].
@@ -113,11 +128,6 @@ pub struct Epmc<'a> {
     by_omega: Vec<f64>,
     by_damping: Vec<f64>,
     gauge_rows: Vec<[Complex64; 2]>,
-    products: Box<mode_products::ModeProducts>,
-    /// Unknowns that the caller gave for the first point; `None` without a guess.
-    guess: Option<Vec<f64>>,
-    /// Whether several linear modes share the frequency of this one.
-    is_repeated: bool,
 }
 
 impl<'a> Epmc<'a> {
@@ -151,27 +161,31 @@ impl<'a> Epmc<'a> {
             structure: boxed(|| ModeFlexibility::new(condensed, gauge.reference_dof, 0.0))?,
             gauge,
             linear,
-            x: try_vec(n.saturating_mul(condensed.blocks().len()), Complex64::ZERO, CONTEXT)?,
-            of_modes: try_vec(condensed.blocks().len(), false, CONTEXT)?,
-            harmonic: [
-                try_vec(n, Complex64::ZERO, CONTEXT)?,
-                try_vec(n, Complex64::ZERO, CONTEXT)?,
-            ],
-            weighted: try_vec(n, Complex64::ZERO, CONTEXT)?,
-            w: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
-            change: try_vec(condensed.set().packed_len(), 0.0, CONTEXT)?,
-            tables,
-            flexibility: try_vec(
-                condensed
-                    .coordinates()
-                    .saturating_pow(2)
-                    .saturating_mul(condensed.blocks().len()),
-                Complex64::ZERO,
-                CONTEXT,
-            )?,
-            by_omega: try_vec(unknowns, 0.0, CONTEXT)?,
-            by_damping: try_vec(unknowns, 0.0, CONTEXT)?,
-            gauge_rows: try_vec(condensed.coordinates(), [Complex64::ZERO; 2], CONTEXT)?,
+            memory: ModeMemory {
+                x: try_vec(n.saturating_mul(condensed.blocks().len()), Complex64::ZERO, CONTEXT)?,
+                of_modes: try_vec(condensed.blocks().len(), false, CONTEXT)?,
+                harmonic: [
+                    try_vec(n, Complex64::ZERO, CONTEXT)?,
+                    try_vec(n, Complex64::ZERO, CONTEXT)?,
+                ],
+                weighted: try_vec(n, Complex64::ZERO, CONTEXT)?,
+                w: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
+                change: try_vec(condensed.set().packed_len(), 0.0, CONTEXT)?,
+            },
+            derivatives: ModeDerivatives {
+                tables,
+                flexibility: try_vec(
+                    condensed
+                        .coordinates()
+                        .saturating_pow(2)
+                        .saturating_mul(condensed.blocks().len()),
+                    Complex64::ZERO,
+                    CONTEXT,
+                )?,
+                by_omega: try_vec(unknowns, 0.0, CONTEXT)?,
+                by_damping: try_vec(unknowns, 0.0, CONTEXT)?,
+                gauge_rows: try_vec(condensed.coordinates(), [Complex64::ZERO; 2], CONTEXT)?,
+            },
             products: boxed(|| Ok(mode_products::ModeProducts::default()))?,
             guess: None,
             is_repeated: false,
@@ -232,22 +246,22 @@ impl<'a> Epmc<'a> {
     /// evaluated, in the solver's units.
     pub fn shape(&mut self) -> &[Complex64] {
         let n = self.condensed.ndof();
-        let [of_modes, memory] = &mut self.harmonic;
-        for (i, is_of_modes) in self.of_modes.iter_mut().enumerate() {
+        let [of_modes, memory] = &mut self.memory.harmonic;
+        for (i, is_of_modes) in self.memory.of_modes.iter_mut().enumerate() {
             if core::mem::replace(is_of_modes, false) {
-                let x = &mut self.x[i * n..(i + 1) * n];
+                let x = &mut self.memory.x[i * n..(i + 1) * n];
                 of_modes.copy_from_slice(x);
                 self.structure.expand(i, of_modes, x, memory);
             }
         }
-        &self.x
+        &self.memory.x
     }
 
     /// Fundamental of the shape x̂, all degrees of freedom, at the point last evaluated.
     #[must_use]
     pub fn fundamental(&self) -> &[Complex64] {
         let (i, n) = (self.condensed.set().fundamental(), self.condensed.ndof());
-        &self.x[i * n..(i + 1) * n]
+        &self.memory.x[i * n..(i + 1) * n]
     }
 
     /// Relative change of the forces with the number of samples; see [`ContactForces::sampling_error`].
@@ -270,7 +284,7 @@ impl<'a> Epmc<'a> {
         let m = set.packed_len();
         u.fill(0.0);
         let fundamental = self.condensed.set().fundamental();
-        let rows = &self.condensed.blocks()[fundamental].rows;
+        let rows = &self.condensed.blocks()[fundamental].motions.rows;
         let phase = self.linear.shape[self.gauge.reference_dof];
         let turn = phase.conj() / (phase.norm() * self.condensed.length());
         for (c, row) in rows.iter().enumerate() {
@@ -352,16 +366,16 @@ impl<'a> Epmc<'a> {
         let i = self.condensed.set().fundamental();
         let x = self.structure.x();
         let length = self.condensed.length();
-        self.weighted.fill(Complex64::ZERO);
+        self.memory.weighted.fill(Complex64::ZERO);
         if let Some(row) = &self.gauge.contact {
             let y = along(row, x);
             for &(p, a) in row.iter().flatten() {
-                self.weighted[p] += a.conj() * y;
+                self.memory.weighted[p] += a.conj() * y;
             }
         } else {
-            self.condensed.blocks()[i].multiply_mass(x, &mut self.weighted);
+            self.condensed.blocks()[i].multiply_mass(x, &mut self.memory.weighted);
         }
-        for z in &mut self.weighted {
+        for z in &mut self.memory.weighted {
             *z *= length * length;
         }
     }
@@ -376,25 +390,25 @@ impl<'a> Epmc<'a> {
         let dof = self.gauge.reference_dof;
         let scale = self.phase_scale();
         let x = self.structure.x();
-        out.values[amplitude] = inner(&self.weighted, x).re - 1.0;
+        out.values[amplitude] = inner(&self.memory.weighted, x).re - 1.0;
         out.values[phase] = scale * x[dof].im;
-        self.structure.fix_gauge(&self.weighted);
+        self.structure.fix_gauge(&self.memory.weighted);
         for c in 0..self.condensed.coordinates() {
             let [product, moved] = self.structure.gauge_of_column(c);
             // x̂ changes by −column·dw; Im z = Re(−i z).
             let size = -2.0 * product;
             let turn = Complex64::I * scale * moved;
-            self.gauge_rows[c] = [size, turn];
+            self.derivatives.gauge_rows[c] = [size, turn];
             let d_scale = self.forces.d_ln_scale(c, i) * by_parameter;
             for (row, g) in [(amplitude, size), (phase, turn)] {
                 out.d_parameter[row] += (g * d_scale).re;
-                self.by_omega[row] += rates.0 * (g * self.forces.by_omega(c, i)).re;
+                self.derivatives.by_omega[row] += rates.0 * (g * self.forces.by_omega(c, i)).re;
             }
         }
         let [of_omega, of_damping] = self.structure.gauge_of_rates();
         for (column, rate, [product, moved]) in [
-            (&mut self.by_omega, rates.0, of_omega),
-            (&mut self.by_damping, rates.1, of_damping),
+            (&mut self.derivatives.by_omega, rates.0, of_omega),
+            (&mut self.derivatives.by_damping, rates.1, of_damping),
         ] {
             column[amplitude] += 2.0 * rate * product.re;
             column[phase] += rate * scale * moved.im;
@@ -417,44 +431,44 @@ impl<'a> Epmc<'a> {
         let coordinates = self.condensed.coordinates();
         out.values[..n - 2].copy_from_slice(motion);
         out.d_parameter.fill(0.0);
-        self.by_omega.fill(0.0);
-        self.by_damping.fill(0.0);
+        self.derivatives.by_omega.fill(0.0);
+        self.derivatives.by_damping.fill(0.0);
         let dofs = self.condensed.ndof();
         let (mut largest, mut rounding) = (0.0_f64, 0.0_f64);
         for (i, block) in self.condensed.blocks().iter().enumerate() {
             let mean = block.number == 0;
             let at = set.offset(i);
-            for (c, w) in self.w.iter_mut().enumerate() {
+            for (c, w) in self.memory.w.iter_mut().enumerate() {
                 *w = self.forces.minus_reference(motion, c, i);
             }
             let interrupt = self.forces.interrupt();
             interrupt.check()?;
             self.structure
-                .solve(self.condensed, i, (omega, damping), &self.w, interrupt)?;
-            self.x[i * dofs..(i + 1) * dofs].copy_from_slice(self.structure.x());
-            self.tables[i].copy_from_slice(self.structure.value());
+                .solve(self.condensed, i, (omega, damping), &self.memory.w, interrupt)?;
+            self.memory.x[i * dofs..(i + 1) * dofs].copy_from_slice(self.structure.x());
+            self.derivatives.tables[i].copy_from_slice(self.structure.value());
             let share = if mean { MEAN_SHARE } else { 1.0 };
-            self.of_modes[i] = self.structure.is_of_modes();
+            self.memory.of_modes[i] = self.structure.is_of_modes();
             largest = largest.max(share * self.structure.largest());
             for row in 0..coordinates {
                 let position = row * m + at;
                 let [x, by_omega, by_damping] = self.structure.relative(row);
                 put(&mut out.values, position, mean, -x);
-                put(&mut self.by_omega, position, mean, -rates.0 * by_omega);
-                put(&mut self.by_damping, position, mean, -rates.1 * by_damping);
+                put(&mut self.derivatives.by_omega, position, mean, -rates.0 * by_omega);
+                put(&mut self.derivatives.by_damping, position, mean, -rates.1 * by_damping);
             }
             for c in 0..coordinates {
                 let lost = self.forces.rounding(c);
                 let d_scale = self.forces.d_ln_scale(c, i) * by_parameter;
                 let by_omega = rates.0 * self.forces.by_omega(c, i);
-                for (row, &g) in self.tables[i][c * coordinates..(c + 1) * coordinates]
+                for (row, &g) in self.derivatives.tables[i][c * coordinates..(c + 1) * coordinates]
                     .iter()
                     .enumerate()
                 {
                     let position = row * m + at;
                     rounding += lost * lost * g.norm_sqr();
                     put(&mut out.d_parameter, position, mean, g * d_scale);
-                    put(&mut self.by_omega, position, mean, g * by_omega);
+                    put(&mut self.derivatives.by_omega, position, mean, g * by_omega);
                 }
             }
             if block.number == 1 {
@@ -483,8 +497,12 @@ impl Jacobian for Epmc<'_> {
         let set = self.condensed.set();
         let m = set.packed_len();
         let harmonics = set.numbers().len();
-        for (i, table) in self.tables.iter().enumerate() {
-            for (to, g) in self.flexibility[i..].iter_mut().step_by(harmonics).zip(table) {
+        for (i, table) in self.derivatives.tables.iter().enumerate() {
+            for (to, g) in self.derivatives.flexibility[i..]
+                .iter_mut()
+                .step_by(harmonics)
+                .zip(table)
+            {
                 *to = *g;
             }
         }
@@ -494,17 +512,21 @@ impl Jacobian for Epmc<'_> {
             *diagonal = 1.0;
         }
         for (motion, columns) in matrix[..n * (n - 2)].chunks_exact_mut((m * n).max(1)).enumerate() {
-            self.forces
-                .couple_all(motion, &self.flexibility, &mut self.change, (columns, n))?;
+            self.forces.couple_all(
+                motion,
+                &self.derivatives.flexibility,
+                &mut self.memory.change,
+                (columns, n),
+            )?;
         }
         let fundamental = set.fundamental();
-        for (c, rows) in self.gauge_rows.iter().enumerate() {
+        for (c, rows) in self.derivatives.gauge_rows.iter().enumerate() {
             for (row, &g) in [n - 2, n - 1].into_iter().zip(rows) {
                 self.forces.couple_scalar(fundamental, (row, c), g, matrix, n);
             }
         }
-        matrix[(n - 2) * n..(n - 1) * n].copy_from_slice(&self.by_omega);
-        matrix[(n - 1) * n..].copy_from_slice(&self.by_damping);
+        matrix[(n - 2) * n..(n - 1) * n].copy_from_slice(&self.derivatives.by_omega);
+        matrix[(n - 1) * n..].copy_from_slice(&self.derivatives.by_damping);
         Ok(())
     }
 

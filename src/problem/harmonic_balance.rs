@@ -67,6 +67,15 @@ pub struct HarmonicBalance<'a> {
     given: Option<Vec<f64>>,
     /// Whether the static solution is not zero, because a contact is preloaded or a law has a static force.
     loaded_at_rest: bool,
+    pub(super) memory: BalanceMemory,
+    pub(super) products: ProductMemory,
+    /// Further responses; and the values that the last reading of one found.
+    gauges: Option<Box<Gauges<'a>>>,
+    seen: Vec<Seen>,
+}
+
+/// Memory of an evaluation.
+pub struct BalanceMemory {
     /// Memory: one number per coordinate, for a column of the Jacobian.
     pub(super) sum: Vec<Complex64>,
     /// Flexibility G in the layout of [`ContactForces::couple_all`].
@@ -75,10 +84,6 @@ pub struct HarmonicBalance<'a> {
     along: Vec<Complex64>,
     /// Memory: one packed signal.
     pub(super) change: Vec<f64>,
-    pub(super) products: ProductMemory,
-    /// Further responses; and the values that the last reading of one found.
-    gauges: Option<Box<Gauges<'a>>>,
-    seen: Vec<Seen>,
 }
 
 /// Memory of products with the Jacobian. The part for systems that are solved by iteration is allocated by the first
@@ -126,10 +131,12 @@ impl<'a> HarmonicBalance<'a> {
             observed: set.watched(),
             given,
             loaded_at_rest,
-            sum: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
-            flexibility: try_vec(flexibility, Complex64::ZERO, CONTEXT)?,
-            along: Vec::new(),
-            change: try_vec(set.packed_len(), 0.0, CONTEXT)?,
+            memory: BalanceMemory {
+                sum: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
+                flexibility: try_vec(flexibility, Complex64::ZERO, CONTEXT)?,
+                along: Vec::new(),
+                change: try_vec(set.packed_len(), 0.0, CONTEXT)?,
+            },
             products: ProductMemory {
                 change: try_vec(condensed.unknowns(), 0.0, CONTEXT)?,
                 harmonic: [of_harmonic()?, of_harmonic()?],
@@ -272,7 +279,7 @@ impl<'a> HarmonicBalance<'a> {
                         if has_slopes {
                             let own = table.slope[coordinates * outputs + row];
                             let along = if lacks_slopes {
-                                self.along[i * outputs + row]
+                                self.memory.along[i * outputs + row]
                             } else {
                                 Complex64::ZERO
                             };
@@ -287,7 +294,7 @@ impl<'a> HarmonicBalance<'a> {
                 }
             }
             if coordinates >= PRODUCTS_FROM {
-                let memory = (&mut self.sum[..], &mut self.products.harmonic);
+                let memory = (&mut self.memory.sum[..], &mut self.products.harmonic);
                 let of = (&*self.forces, &self.tables, self.condensed);
                 rounding += contact_terms::add_products(of, i, (u, path, has_slopes), memory, out);
                 continue;
@@ -330,13 +337,13 @@ impl<'a> HarmonicBalance<'a> {
     fn find_slopes_along(&mut self, u: &[f64]) -> Result<()> {
         let (coordinates, harmonics) = (self.condensed.coordinates(), self.condensed.set().numbers().len());
         let outputs = coordinates + 1;
-        if self.along.is_empty() {
-            self.along = try_vec(outputs * harmonics, Complex64::ZERO, "the forced response")?;
+        if self.memory.along.is_empty() {
+            self.memory.along = try_vec(outputs * harmonics, Complex64::ZERO, "the forced response")?;
         }
-        self.along.fill(Complex64::ZERO);
+        self.memory.along.fill(Complex64::ZERO);
         let interrupt = self.forces.interrupt();
-        for (i, along) in self.along.chunks_exact_mut(outputs).enumerate() {
-            for (c, w) in self.sum.iter_mut().enumerate() {
+        for (i, along) in self.memory.along.chunks_exact_mut(outputs).enumerate() {
+            for (c, w) in self.memory.sum.iter_mut().enumerate() {
                 let is_active = !self.forces.is_inactive(c);
                 *w = if is_active {
                     self.forces.minus_reference(u, c, i)
@@ -345,7 +352,7 @@ impl<'a> HarmonicBalance<'a> {
                 };
             }
             self.tables
-                .slope_along(self.condensed, i, &self.sum, along, interrupt)?;
+                .slope_along(self.condensed, i, &self.memory.sum, along, interrupt)?;
         }
         Ok(())
     }
@@ -366,7 +373,13 @@ impl<'a> HarmonicBalance<'a> {
         // Tables without slopes have that of the response along the motion, from the last residual.
         let along = self.tables.lacks_slopes_of_response(i);
         let mut dz = match path {
-            None if along => rate(self.along.get(i * outputs + coordinates).copied().unwrap_or_default()),
+            None if along => rate(
+                self.memory
+                    .along
+                    .get(i * outputs + coordinates)
+                    .copied()
+                    .unwrap_or_default(),
+            ),
             _ => rate(table.slope[excited]),
         };
         for c in (0..coordinates).filter(|&c| !self.forces.is_inactive(c)) {
@@ -451,7 +464,7 @@ impl Jacobian for HarmonicBalance<'_> {
         if is_active
             && self
                 .forces
-                .fill_single(self.tables.current(), &mut self.flexibility, matrix)?
+                .fill_single(self.tables.current(), &mut self.memory.flexibility, matrix)?
         {
             return Ok(());
         }
@@ -460,7 +473,7 @@ impl Jacobian for HarmonicBalance<'_> {
                 let forces = table.value.chunks_exact(coordinates + 1).take(coordinates);
                 for (force, column) in forces.enumerate() {
                     let first = force * coordinates * harmonics + i;
-                    let to = self.flexibility[first..].iter_mut().step_by(harmonics);
+                    let to = self.memory.flexibility[first..].iter_mut().step_by(harmonics);
                     for (to, g) in to.zip(&column[..coordinates]) {
                         *to = *g;
                     }
@@ -475,7 +488,7 @@ impl Jacobian for HarmonicBalance<'_> {
             // All numbers of a motion are active or none.
             if active[motion * m] {
                 self.forces
-                    .couple_all(motion, &self.flexibility, &mut self.change, (columns, n))?;
+                    .couple_all(motion, &self.memory.flexibility, &mut self.memory.change, (columns, n))?;
             }
         }
         Ok(())

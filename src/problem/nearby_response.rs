@@ -29,10 +29,10 @@ impl HarmonicBalance<'_> {
         }
         let m = set.packed_len();
         for c in (0..coordinates).filter(|&c| !forces.is_inactive(c)) {
-            forces.behind((&self.products.change, along), c, &mut self.change);
+            forces.behind((&self.products.change, along), c, &mut self.memory.change);
             let at = c * outputs + coordinates;
             for (i, (x, table)) in x.iter_mut().zip(tables.current()).enumerate() {
-                let w = set.get(&self.change, i) - condensed.kappa(c, i) * set.get_at(u, c * m, i);
+                let w = set.get(&self.memory.change, i) - condensed.kappa(c, i) * set.get_at(u, c * m, i);
                 *x -= moved(table.value[at], table.slope[at]) * w;
             }
         }

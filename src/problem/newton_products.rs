@@ -61,7 +61,7 @@ impl MatrixFree for HarmonicBalance<'_> {
             let tables = self.tables.current();
             let flexibility = (|i: usize| &tables[i].value[..], coordinates + 1);
             self.forces
-                .couple(0..harmonics, (c, q), flexibility, &mut self.sum, column);
+                .couple(0..harmonics, (c, q), flexibility, &mut self.memory.sum, column);
             for (to, from) in to.chunks_exact_mut(part).zip(column.chunks_exact(m)) {
                 for (to, from) in to.iter_mut().zip(from) {
                     *to += from;
@@ -156,7 +156,7 @@ impl HarmonicBalance<'_> {
         let coordinates = self.condensed.coordinates();
         let dw = &self.products.change[..];
         out.copy_from_slice(d);
-        let (sum, [z, memory]) = (&mut self.sum[..], &mut self.products.harmonic);
+        let (sum, [z, memory]) = (&mut self.memory.sum[..], &mut self.products.harmonic);
         for (i, table) in self.tables.current().iter().enumerate() {
             let (at, mean) = (set.offset(i), set.numbers()[i] == 0);
             for (z, dw) in z.iter_mut().zip(dw.chunks_exact(m)) {

@@ -54,7 +54,7 @@ impl Wanted<'_> {
     fn fill(&self, (block, set, i): (&HarmonicBlock, &HarmonicSet, usize), field: &mut [Complex64]) {
         let (m, n) = (set.packed_len(), field.len());
         field.fill(Complex64::ZERO);
-        for (c, row) in block.rows.iter().enumerate() {
+        for (c, row) in block.motions.rows.iter().enumerate() {
             let of_row = set.get(&self.lambda[c * m..(c + 1) * m], i);
             for &(p, a) in row.terms() {
                 field[p] += a.conj() * of_row;
@@ -152,7 +152,7 @@ impl<'a> ForcedPoint<'a> {
             }
             self.workspace
                 .adjoint(self.condensed, i, omega, &mut field, self.interrupt)?;
-            for (c, row) in block.rows.iter().enumerate() {
+            for (c, row) in block.motions.rows.iter().enumerate() {
                 let g = -row.along(&field).conj();
                 self.problem.forces().couple_scalar(i, (0, c), g, gradient, 1);
             }
@@ -243,7 +243,7 @@ impl<'a> ForcedPoint<'a> {
             // The factors are those of the motion.
             self.workspace
                 .adjoint_with_factors(condensed, i, omega, &mut field, self.interrupt)?;
-            for (c, row) in condensed.blocks()[i].rows.iter().enumerate() {
+            for (c, row) in condensed.blocks()[i].motions.rows.iter().enumerate() {
                 let g = -row.along(&field).conj();
                 self.problem.forces().couple_scalar(i, (0, c), g, lambda, 1);
             }
@@ -373,12 +373,12 @@ impl<'a> ForcedPoint<'a> {
             for z in load.iter_mut() {
                 *z = -*z;
             }
-            if let Some(unbalance) = &block.unbalance {
+            if let Some(unbalance) = &block.load.unbalance {
                 for (z, f) in load.iter_mut().zip(unbalance) {
                     *z += 2.0 * omega * f;
                 }
             }
-            for (c, row) in block.rows.iter().enumerate() {
+            for (c, row) in block.motions.rows.iter().enumerate() {
                 let of_law = self.problem.forces().by_omega(c, i);
                 for &(p, a) in row.terms() {
                     load[p] -= a.conj() * of_law;
@@ -468,12 +468,12 @@ impl<'a> ForcedPoint<'a> {
         let Some((i, block)) = condensed.blocks().iter().enumerate().find(|(_, b)| b.number == 0) else {
             return Ok(change);
         };
-        for &(p, a) in block.rows[coordinate].terms() {
+        for &(p, a) in block.motions.rows[coordinate].terms() {
             moved[p] += stiffness * a.conj();
         }
         self.workspace
             .motion_under(condensed, i, omega, &mut moved, self.interrupt)?;
-        for (c, row) in block.rows.iter().enumerate() {
+        for (c, row) in block.motions.rows.iter().enumerate() {
             set.set(&mut change[c * m..(c + 1) * m], i, row.along(&moved));
         }
         self.system.solve(&mut change);
@@ -514,7 +514,7 @@ impl<'a> ForcedPoint<'a> {
             moved.copy_from_slice(&self.by_omega[i * n..(i + 1) * n]);
             self.workspace
                 .motion_under(condensed, i, omega, &mut moved, self.interrupt)?;
-            for (c, row) in block.rows.iter().enumerate() {
+            for (c, row) in block.motions.rows.iter().enumerate() {
                 set.set(&mut slope[c * m..(c + 1) * m], i, -row.along(&moved));
             }
         }

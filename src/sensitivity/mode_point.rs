@@ -92,7 +92,7 @@ impl ModePointAdjoint<'_> {
         for (i, block) in condensed.blocks().iter().enumerate() {
             let range = i * n..(i + 1) * n;
             let field = &mut adjoint.field[range.clone()];
-            for (c, row) in block.rows.iter().enumerate() {
+            for (c, row) in block.motions.rows.iter().enumerate() {
                 let of_row = set.get(&lambda[c * m..(c + 1) * m], i);
                 for &(p, a) in row.terms() {
                     field[p] += a.conj() * of_row;

@@ -25,14 +25,14 @@ fn factor(model: &Model, condensed: &Condensed, adjoint: &Adjoint, i: usize, whi
     let rate = Complex64::new(0.0, hw);
     match which {
         MatrixKind::Mass => {
-            let artificial = match block.artificial {
+            let artificial = match block.matrices.artificial {
                 Artificial::Mass => -2.0 * hw * adjoint.omega * damping,
                 Artificial::None | Artificial::Stiffness(_) => 0.0,
             };
             Complex64::new(-hw * hw, artificial) + alpha * rate
         }
         MatrixKind::Stiffness => {
-            let artificial = match block.artificial {
+            let artificial = match block.matrices.artificial {
                 Artificial::Stiffness(_) => -2.0 * h * damping,
                 Artificial::None | Artificial::Mass => 0.0,
             };
@@ -64,7 +64,7 @@ fn sum(
         || condensed
             .blocks()
             .iter()
-            .any(|b| matches!(b.artificial, Artificial::Stiffness(_)));
+            .any(|b| matches!(b.matrices.artificial, Artificial::Stiffness(_)));
     if which == MatrixKind::Stiffness && elastic_alone && structure.has_complex_stiffness() {
         return fail!(
             Unsupported,

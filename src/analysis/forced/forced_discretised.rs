@@ -94,25 +94,45 @@ pub(crate) struct ForcedDiscretised<'a> {
     linear_response: LinearResponse<'a>,
     recorder: BranchRecorder<'a>,
     estimator: Option<Box<ForcedEstimator<'a>>>,
-    /// Whether the current problem may have been evaluated last at another point than the current one.
-    stale: bool,
+    state: PointState,
+    errors: ForcedErrors,
+    responses: WatchedResponses<'a>,
+    told: ForcedTold,
+    verdicts: ForcedStability<'a>,
+}
+
+/// Errors of the point estimated last.
+pub(crate) struct ForcedErrors {
     /// Error of the point estimated last, until it is recorded.
     estimated: Option<f64>,
     /// Error of the point estimated last; and errors of the requested responses.
-    last_error: f64,
-    last_errors: Vec<f64>,
-    responses: WatchedResponses<'a>,
+    last: f64,
+    of_responses: Vec<f64>,
     /// Whether the caller requests the estimate of every point.
-    estimates_each: bool,
+    each: bool,
+}
+
+/// Stability, and motions with more harmonics for it.
+pub(crate) struct ForcedStability<'a> {
+    of_points: Option<BranchStability<'a>>,
+    /// Motions with more harmonics, as starts of shooting for stability.
+    fine: Option<FineMotion<'a>>,
+}
+
+/// What is told of a run.
+pub(crate) struct ForcedTold {
     /// Newton iterations of the first point.
     first_iterations: usize,
     guess_used: Option<bool>,
     flexibility_way: FlexibilityWay,
+}
+
+/// State of the problem and of the point recorded last.
+pub(crate) struct PointState {
+    /// Whether the current problem may have been evaluated last at another point than the current one.
+    stale: bool,
     /// Whether every contact was linear at the point of the curve recorded last.
     linear: bool,
-    stability: Option<BranchStability<'a>>,
-    /// Motions with more harmonics, as starts of shooting for stability.
-    fine: Option<FineMotion<'a>>,
 }
 
 impl<'a> ForcedDiscretised<'a> {
@@ -146,7 +166,11 @@ impl<'a> ForcedDiscretised<'a> {
         };
         let equations = boxed(|| Equations::new(resolution, &settings, (responses.list, response), guess, interrupt))?;
         Ok(Self {
-            flexibility_way: equations.problem.flexibility_way(),
+            told: ForcedTold {
+                first_iterations: 0,
+                guess_used: None,
+                flexibility_way: equations.problem.flexibility_way(),
+            },
             recorder: BranchRecorder::new(branch, solver.tolerance),
             resolutions: Resolutions::new(levels, level, equations)?,
             linear_response: LinearResponse::new(stuck),
@@ -163,34 +187,38 @@ impl<'a> ForcedDiscretised<'a> {
                     })
                 })
                 .transpose()?,
-            stale: false,
-            estimated: None,
-            last_error: f64::NAN,
-            last_errors: Vec::new(),
-            responses,
-            estimates_each: solver.estimate_error,
-            first_iterations: 0,
-            guess_used: None,
-            linear: false,
-            fine: match &stability {
-                Some(stability) if stability.on_all_degrees => {
-                    let observed = (response, Range::new(settings.start, settings.end));
-                    Some(FineMotion::new(model, solver, observed, extended, interrupt)?)
-                }
-                _ => None,
+            state: PointState {
+                stale: false,
+                linear: false,
             },
-            stability,
+            errors: ForcedErrors {
+                estimated: None,
+                last: f64::NAN,
+                of_responses: Vec::new(),
+                each: solver.estimate_error,
+            },
+            responses,
+            verdicts: ForcedStability {
+                fine: match &stability {
+                    Some(stability) if stability.on_all_degrees => {
+                        let observed = (response, Range::new(settings.start, settings.end));
+                        Some(FineMotion::new(model, solver, observed, extended, interrupt)?)
+                    }
+                    _ => None,
+                },
+                of_points: stability,
+            },
         })
     }
 
     /// Notes the first point: its iterations bound the work of an estimate.
     pub fn note_first(&mut self, first: &Point) {
-        self.first_iterations = first.iterations;
+        self.told.first_iterations = first.iterations;
     }
 
     /// Notes whether the first point was found from the given guess, if there was one.
     pub fn note_guess(&mut self, used: Option<bool>) {
-        self.guess_used = used;
+        self.told.guess_used = used;
     }
 
     /// The null vector of the Jacobian at a point of the current resolution, by inverse iteration from a start, and the size of its
@@ -203,7 +231,7 @@ impl<'a> ForcedDiscretised<'a> {
     ) -> Result<Option<(Vec<f64>, f64)>> {
         let Equations { problem, corrector, .. } = &mut *self.resolutions.current;
         let metric = Metric::along(norm(at.unknowns()), &self.settings);
-        self.stale = true;
+        self.state.stale = true;
         corrector.null_direction(problem, &at.v, start, metric, interrupt)
     }
 
@@ -220,7 +248,7 @@ impl<'a> ForcedDiscretised<'a> {
         row[n] = 1.0;
         let mut v = try_copy(&near.v, "a start")?;
         let metric = Metric::along(norm(near.unknowns()), &self.settings);
-        self.stale = true;
+        self.state.stale = true;
         let outcome = corrector.correct(problem, &mut v, &row, metric, true, interrupt)?;
         let Outcome::Converged(corrected) = outcome else {
             return Ok(None);
@@ -239,7 +267,7 @@ impl<'a> ForcedDiscretised<'a> {
     ) -> Result<Option<Point>> {
         let mut beside = near.try_clone()?;
         let metric = Metric::along(norm(near.unknowns()), &self.settings);
-        self.stale = true;
+        self.state.stale = true;
         let Equations { problem, corrector, .. } = &mut *self.resolutions.current;
         if !corrector.leave_known(problem, &mut beside.v, known, metric, interrupt)? {
             return Ok(None);
@@ -258,7 +286,7 @@ impl<'a> ForcedDiscretised<'a> {
 
     /// How the flexibility is made along the branch, and why in this way.
     pub fn flexibility_way(&self) -> FlexibilityWay {
-        self.flexibility_way
+        self.told.flexibility_way
     }
 
     /// Completes the branch: its ending, its reduction, and its special points.
@@ -270,8 +298,8 @@ impl<'a> ForcedDiscretised<'a> {
         estimates: usize,
     ) -> Result<Box<Branch>> {
         let reduction = Reduction {
-            guess_used: self.guess_used,
-            flexibility_way: self.flexibility_way,
+            guess_used: self.told.guess_used,
+            flexibility_way: self.told.flexibility_way,
             ..self
                 .resolutions
                 .reduction(model, solver, self.recorder.branch().reduction())?
@@ -281,10 +309,10 @@ impl<'a> ForcedDiscretised<'a> {
 
     /// Evaluates the problem at a point, unless this was the last point of evaluation.
     fn refresh(&mut self, point: &Point) -> Result<()> {
-        if self.stale {
+        if self.state.stale {
             let Equations { problem, corrector, .. } = &mut *self.resolutions.current;
             corrector.evaluate(problem, &point.v)?;
-            self.stale = false;
+            self.state.stale = false;
         }
         Ok(())
     }
@@ -312,7 +340,7 @@ impl<'a> ForcedDiscretised<'a> {
             watched: &self.responses.watched,
             together: self.responses.together,
             sticks: Some(problem.forces().all_stuck()),
-            iterations: self.first_iterations,
+            iterations: self.told.first_iterations,
         };
         if again {
             return estimator.again(&solved);
@@ -322,10 +350,10 @@ impl<'a> ForcedDiscretised<'a> {
 
     /// Keeps an estimate until its point is recorded.
     fn keep(&mut self, estimate: Estimate) -> Result<Assessment> {
-        self.estimated = Some(estimate.response);
-        self.last_error = estimate.response;
-        self.last_errors.clear();
-        try_extend(&mut self.last_errors, &estimate.responses, "the responses")?;
+        self.errors.estimated = Some(estimate.response);
+        self.errors.last = estimate.response;
+        self.errors.of_responses.clear();
+        try_extend(&mut self.errors.of_responses, &estimate.responses, "the responses")?;
         Ok(Assessment {
             error: estimate.response,
             estimate,
@@ -334,7 +362,7 @@ impl<'a> ForcedDiscretised<'a> {
 
     /// The motion of the point evaluated last with more harmonics, where stability needs it and it is certified.
     fn fine_motion(&mut self, point: &Point) -> Result<Option<Vec<Complex64>>> {
-        let Some(fine) = &mut self.fine else {
+        let Some(fine) = &mut self.verdicts.fine else {
             return Ok(None);
         };
         let Equations {
@@ -353,19 +381,19 @@ impl<'a> ForcedDiscretised<'a> {
             watched: &[],
             together: false,
             sticks: Some(problem.forces().all_stuck()),
-            iterations: self.first_iterations,
+            iterations: self.told.first_iterations,
         })
     }
 
     /// Estimated relative error of the response amplitude; NaN if unknown or not requested.
     fn error(&mut self, point: &Point) -> Result<f64> {
-        if let Some(error) = self.estimated.take() {
+        if let Some(error) = self.errors.estimated.take() {
             return Ok(error);
         }
         let found = self.estimate_error(point, false)?;
-        self.last_errors.clear();
+        self.errors.of_responses.clear();
         let Some(found) = found else { return Ok(f64::NAN) };
-        try_extend(&mut self.last_errors, &found.responses, "the responses")?;
+        try_extend(&mut self.errors.of_responses, &found.responses, "the responses")?;
         Ok(found.response)
     }
 
@@ -399,7 +427,7 @@ impl Discretised for ForcedDiscretised<'_> {
     }
 
     fn select(&mut self, resolution: usize) -> Result<()> {
-        self.stale |= resolution != self.resolutions.index();
+        self.state.stale |= resolution != self.resolutions.index();
         let (settings, response) = (&self.settings, self.recorder.branch().response_dof());
         let (interrupt, responses) = (self.interrupt, self.responses.list);
         self.resolutions.select(resolution, |level| {
@@ -424,7 +452,7 @@ impl Discretised for ForcedDiscretised<'_> {
     fn resolve(&mut self, near: &Point, keep_parameter: bool, interrupt: &Interrupt<'_>) -> Result<Option<Point>> {
         let Equations { problem, corrector, .. } = &mut *self.resolutions.current;
         let found = resolve(problem, corrector, &self.settings, near, keep_parameter, interrupt)?;
-        self.stale = found.is_none();
+        self.state.stale = found.is_none();
         Ok(found)
     }
 
@@ -435,7 +463,7 @@ impl Discretised for ForcedDiscretised<'_> {
     }
 
     fn estimate(&mut self, point: &Point) -> Result<Option<Assessment>> {
-        self.estimated = None;
+        self.errors.estimated = None;
         self.refresh(point)?;
         let found = self.estimate_error(point, false)?;
         found.map(|estimate| self.keep(estimate)).transpose()
@@ -453,11 +481,11 @@ impl Discretised for ForcedDiscretised<'_> {
 
     fn take_over_estimate(&mut self, point: &Point, factor: f64) -> Result<bool> {
         self.refresh(point)?;
-        if self.estimates_each || self.resolutions.current.problem.forces().all_stuck() {
+        if self.errors.each || self.resolutions.current.problem.forces().all_stuck() {
             return Ok(false);
         }
-        self.estimated = Some(self.last_error * factor);
-        for error in &mut self.last_errors {
+        self.errors.estimated = Some(self.errors.last * factor);
+        for error in &mut self.errors.of_responses {
             *error *= factor;
         }
         Ok(true)
@@ -484,10 +512,10 @@ impl Discretised for ForcedDiscretised<'_> {
         });
         let settings = &self.settings;
         let current = &mut *self.resolutions.current;
-        self.stale = true;
+        self.state.stale = true;
         let Some(own) = own? else {
             let found = current.linear_at(settings, (near, parameter), factorised, interrupt)?;
-            self.stale = found.is_none();
+            self.state.stale = found.is_none();
             return Ok(found);
         };
         let (to, from) = (&current.resolution.condensed, &own.resolution.condensed);
@@ -505,12 +533,13 @@ impl Discretised for ForcedDiscretised<'_> {
     }
 
     fn verdict(&mut self, point: &Point) -> Result<Option<Verdict>> {
-        self.stale |= self.fine.is_some();
+        self.state.stale |= self.verdicts.fine.is_some();
         self.refresh(point)?;
         let fine = self.fine_motion(point)?;
         let resolution = self.resolutions.current.resolution;
         let found = self
-            .stability
+            .verdicts
+            .of_points
             .as_mut()
             .map(|s| s.at(resolution, point, fine.as_deref()));
         found.transpose()
@@ -563,15 +592,19 @@ impl Recorder for ForcedDiscretised<'_> {
         self.responses.see(
             &mut self.resolutions.current.problem,
             (point, resolution),
-            &self.last_errors,
+            &self.errors.of_responses,
         )?;
         let record = self.resolutions.current.record(point, error, &self.responses.seen)?;
         self.recorder.record(&record, point.stalled)?;
-        self.linear = self.resolutions.current.problem.forces().all_linear();
-        let fine = if self.linear { None } else { self.fine_motion(point)? };
-        if let Some(stability) = &mut self.stability {
+        self.state.linear = self.resolutions.current.problem.forces().all_linear();
+        let fine = if self.state.linear {
+            None
+        } else {
+            self.fine_motion(point)?
+        };
+        if let Some(stability) = &mut self.verdicts.of_points {
             let resolution = self.resolutions.current.resolution;
-            let verdict = stability.along(resolution, point, fine.as_deref(), self.linear)?;
+            let verdict = stability.along(resolution, point, fine.as_deref(), self.state.linear)?;
             self.recorder.record_verdict(verdict)?;
         }
         self.resolutions.note_recorded();
@@ -579,17 +612,17 @@ impl Recorder for ForcedDiscretised<'_> {
     }
 
     fn is_linear(&self) -> bool {
-        self.linear
+        self.state.linear
     }
 
     fn take_verdicts(&mut self) -> Option<(Verdict, Verdict)> {
-        self.stability.as_mut()?.take_last()
+        self.verdicts.of_points.as_mut()?.take_last()
     }
 
     /// Solves the point once more at its frequency with a factorised flexibility, since along the sweep this may be a
     /// sum over modes. At a fold the solution at a fixed frequency is not isolated.
     fn sharpen(&mut self, kind: SpecialKind, point: &mut Point) -> Result<()> {
-        self.stale = false;
+        self.state.stale = false;
         let Equations { problem, corrector, .. } = &mut *self.resolutions.current;
         let mut found = None;
         let accurate = self.linear_response.solved == Some(point.parameter());
@@ -618,13 +651,17 @@ impl Recorder for ForcedDiscretised<'_> {
         let mut error = f64::NAN;
         if kind.response().is_some_and(|response| response > 0) {
             // That of the point of the curve before it.
-            error = self.estimator.as_ref().map_or(f64::NAN, |_| self.last_error);
+            error = self.estimator.as_ref().map_or(f64::NAN, |_| self.errors.last);
         } else if !kind.is_fold() {
             error = self.error(point)?;
             self.recorder.note_error(error);
         }
         let index = self.resolutions.index();
-        let unknown = if kind.is_fold() { &[] } else { &self.last_errors[..] };
+        let unknown = if kind.is_fold() {
+            &[]
+        } else {
+            &self.errors.of_responses[..]
+        };
         self.responses
             .see(&mut self.resolutions.current.problem, (point, index), unknown)?;
         let resolution = self.resolutions.current.resolution;
@@ -656,7 +693,7 @@ pub(crate) fn relative_motion(resolution: &Resolution, guess: &[Complex64]) -> R
             continue;
         };
         degrees.restrict(all, &mut x);
-        for (c, row) in block.structural_rows.iter().enumerate() {
+        for (c, row) in block.motions.structural_rows.iter().enumerate() {
             let y = along(row, &x);
             set.set(&mut packed[c * m..(c + 1) * m], i, y / condensed.length());
         }

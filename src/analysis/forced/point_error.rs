@@ -102,7 +102,7 @@ pub fn estimate_at_with(
         wave = other;
         &wave
     };
-    let form = match condensed.blocks().first().map(|b| &b.artificial) {
+    let form = match condensed.blocks().first().map(|b| &b.matrices.artificial) {
         Some(Artificial::Stiffness(_)) => DampingForm::Stiffness,
         _ => DampingForm::Mass,
     };

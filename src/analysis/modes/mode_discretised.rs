@@ -36,12 +36,7 @@ pub(crate) struct ModeDiscretised<'a> {
     resolutions: Resolutions<'a, Equations<'a>>,
     recorder: BranchRecorder<'a>,
     estimator: Option<Box<ModeEstimator<'a>>>,
-    /// Errors of frequency and damping ratio of the point estimated last, until it is recorded.
-    estimated: Option<(f64, f64)>,
-    /// Errors of frequency and damping ratio of the point estimated last.
-    last_errors: (f64, f64),
-    /// Whether the caller requests the estimate of every point.
-    estimates_each: bool,
+    errors: ModeErrors,
     /// Largest modulus of the damping ratio so far.
     damping: f64,
     /// Fundamental of the previous point of the curve.
@@ -50,6 +45,16 @@ pub(crate) struct ModeDiscretised<'a> {
     onsets: OnsetSearch,
     /// Whether branch points are located.
     seeks_branches: bool,
+}
+
+/// Errors of frequency and damping at the point estimated last.
+pub(crate) struct ModeErrors {
+    /// Errors of frequency and damping ratio of the point estimated last, until it is recorded.
+    estimated: Option<(f64, f64)>,
+    /// Errors of frequency and damping ratio of the point estimated last.
+    last: (f64, f64),
+    /// Whether the caller requests the estimate of every point.
+    each: bool,
 }
 
 /// Numbers of a point beside its motion.
@@ -80,9 +85,11 @@ impl<'a> ModeDiscretised<'a> {
             start,
             settings,
             estimator,
-            estimated: None,
-            last_errors: (f64::NAN, f64::NAN),
-            estimates_each: solver.estimate_error,
+            errors: ModeErrors {
+                estimated: None,
+                last: (f64::NAN, f64::NAN),
+                each: solver.estimate_error,
+            },
             damping: start.linear.damping.abs(),
             before: Vec::new(),
             guess_used: None,
@@ -213,7 +220,7 @@ impl<'a> ModeDiscretised<'a> {
         let equations = &mut *self.resolutions.current;
         let amplitude = equations.response[equations.resolution.condensed.set().fundamental()];
         let sampling_error = equations.problem.sampling_error(&equations.motion, omega)?;
-        let errors = match self.estimated.take() {
+        let errors = match self.errors.estimated.take() {
             _ if is_singular => (f64::NAN, f64::NAN),
             Some(errors) => errors,
             None => self
@@ -291,14 +298,14 @@ impl Discretised for ModeDiscretised<'_> {
     }
 
     fn estimate(&mut self, point: &Point) -> Result<Option<Assessment>> {
-        self.estimated = None;
+        self.errors.estimated = None;
         self.evaluate(point)?;
         let Some(estimate) = self.estimate_error(point)? else {
             return Ok(None);
         };
         let errors = (estimate.frequency, estimate.damping);
-        self.estimated = Some(errors);
-        self.last_errors = errors;
+        self.errors.estimated = Some(errors);
+        self.errors.last = errors;
         let damping = Epmc::frequency_and_damping(self.start.linear, point.unknowns()).1;
         Ok(Some(Assessment {
             error: self.bounded_error(errors, damping),
@@ -313,11 +320,11 @@ impl Discretised for ModeDiscretised<'_> {
 
     fn take_over_estimate(&mut self, point: &Point, factor: f64) -> Result<bool> {
         self.evaluate(point)?;
-        if self.estimates_each || self.resolutions.current.problem.forces().all_stuck() {
+        if self.errors.each || self.resolutions.current.problem.forces().all_stuck() {
             return Ok(false);
         }
-        let (of_frequency, of_damping) = self.last_errors;
-        self.estimated = Some((of_frequency * factor, of_damping * factor));
+        let (of_frequency, of_damping) = self.errors.last;
+        self.errors.estimated = Some((of_frequency * factor, of_damping * factor));
         Ok(true)
     }
 

@@ -63,7 +63,11 @@ impl ModeStart {
     pub fn check_motion(&self, condensed: &Condensed) -> Result<()> {
         let i = condensed.set().fundamental();
         let shape = &self.linear.shape;
-        let moved = condensed.blocks()[i].rows.iter().map(|row| row.along(shape).norm());
+        let moved = condensed.blocks()[i]
+            .motions
+            .rows
+            .iter()
+            .map(|row| row.along(shape).norm());
         let motion = moved.fold(0.0, f64::max);
         let largest = shape.iter().fold(0.0_f64, |m, z| m.max(z.norm()));
         if condensed.coordinates() == 0 || motion <= NODE * largest {

@@ -82,6 +82,16 @@ pub struct Condensed {
     pub(crate) certificate: f64,
     pub(crate) length: f64,
     pub(crate) blocks: Vec<HarmonicBlock>,
+    pub(crate) contacts: CondensedContacts,
+    pub(crate) reference: Reference,
+    pub(crate) wave: CondensedWave,
+    /// Factor by which laws without exact events are sampled more finely than by default.
+    pub(crate) refinement: usize,
+}
+
+/// Contacts and their linear state, one entry a relative motion where not said otherwise.
+#[derive(Clone, Debug)]
+pub struct CondensedContacts {
     /// Contact laws on their coordinates, shared by the condensed models of all resolutions.
     pub(crate) laws: Arc<Vec<AssembledLaw>>,
     /// Stiffness per coordinate: the sum of kt of its contacts, or more if one is a spring with growing stiffness.
@@ -95,18 +105,20 @@ pub struct Condensed {
     /// Per coordinate, whether all its laws can stick, as friction does.
     pub(crate) can_stick: Vec<bool>,
     pub(crate) preloaded: bool,
-    pub(crate) reference: Reference,
     /// Share of the reference stiffness that the fundamental takes, per coordinate.
     pub(crate) share: Vec<f64>,
-    pub(crate) contact_classes: ContactClasses,
+    pub(crate) classes: ContactClasses,
+}
+
+/// How sectors move relative to each other.
+#[derive(Clone, Debug)]
+pub struct CondensedWave {
     pub(crate) sectors: usize,
     pub(crate) in_step: usize,
     /// Number of sectors and engine order where the structure is a whole wheel, else `None`.
     pub(crate) wheel: Option<(usize, i64)>,
     /// The whole wheel as a tuned one with differences of low rank, where it is factorised in that way, else `None`.
     pub(crate) tuned: Option<Arc<TunedPlan>>,
-    /// Factor by which laws without exact events are sampled more finely than by default.
-    pub(crate) refinement: usize,
 }
 
 impl Condensed {
@@ -117,16 +129,19 @@ impl Condensed {
             set,
             degrees: self.degrees.clone(),
             blocks,
-            laws: Arc::clone(&self.laws),
-            stiffness: try_copy(&self.stiffness, CONTEXT)?,
-            resistance: try_copy(&self.resistance, CONTEXT)?,
-            reference_stiffness: try_copy(&self.reference_stiffness, CONTEXT)?,
-            exchanges: try_copy(&self.exchanges, CONTEXT)?,
-            can_stick: try_copy(&self.can_stick, CONTEXT)?,
-            share: try_copy(&self.share, CONTEXT)?,
-            contact_classes: self.contact_classes.clone(),
             structure: self.structure.as_ref().map(Structure::try_clone).transpose()?,
-            tuned: self.tuned.clone(),
+            contacts: CondensedContacts {
+                laws: Arc::clone(&self.contacts.laws),
+                stiffness: try_copy(&self.contacts.stiffness, CONTEXT)?,
+                resistance: try_copy(&self.contacts.resistance, CONTEXT)?,
+                reference_stiffness: try_copy(&self.contacts.reference_stiffness, CONTEXT)?,
+                exchanges: try_copy(&self.contacts.exchanges, CONTEXT)?,
+                can_stick: try_copy(&self.contacts.can_stick, CONTEXT)?,
+                share: try_copy(&self.contacts.share, CONTEXT)?,
+                classes: self.contacts.classes.clone(),
+                ..self.contacts
+            },
+            wave: self.wave.clone(),
             ..*self
         })
     }
@@ -138,7 +153,7 @@ impl Condensed {
     /// Those of the laws; `Internal` where another condensed model shares them.
     pub fn renew_laws(&mut self, model: &Model, contacts: &[usize]) -> Result<()> {
         let length = self.length;
-        let Some(laws) = Arc::get_mut(&mut self.laws) else {
+        let Some(laws) = Arc::get_mut(&mut self.contacts.laws) else {
             return fail!(Internal, "the laws of a condensed model are shared");
         };
         for own in laws.iter_mut().filter(|own| contacts.contains(&own.contact)) {
@@ -249,14 +264,14 @@ impl Condensed {
     #[must_use]
     #[inline]
     pub fn laws(&self) -> &[AssembledLaw] {
-        &self.laws
+        &self.contacts.laws
     }
 
     /// Number of relative coordinates.
     #[must_use]
     #[inline]
     pub fn coordinates(&self) -> usize {
-        self.stiffness.len()
+        self.contacts.stiffness.len()
     }
 
     /// Number of unknowns: the packed relative motions.
@@ -268,36 +283,36 @@ impl Condensed {
     /// Number of contacts in the model, the removed ones included.
     #[must_use]
     pub fn contacts(&self) -> usize {
-        self.contact_classes.contacts().len()
+        self.contacts.classes.contacts().len()
     }
 
     /// The contacts of the model at the time of its condensation.
     #[must_use]
     pub fn contact_classes(&self) -> &ContactClasses {
-        &self.contact_classes
+        &self.contacts.classes
     }
 
     /// Sectors of the wheel; 1 for a plain structure.
     #[must_use]
     pub fn sectors(&self) -> usize {
-        self.sectors
+        self.wave.sectors
     }
 
     /// Number of sectors and engine order of the forces, where the structure is a whole wheel.
     #[must_use]
     pub fn wheel(&self) -> Option<(usize, i64)> {
-        self.wheel
+        self.wave.wheel
     }
 
     /// The whole wheel as a tuned one with differences of low rank, where it is factorised in that way, else `None`.
     pub(crate) fn tuned(&self) -> Option<&Arc<TunedPlan>> {
-        self.tuned.as_ref()
+        self.wave.tuned.as_ref()
     }
 
     /// Step m between the harmonics in which all sectors move alike: these are the multiples of m.
     #[must_use]
     pub fn in_step(&self) -> usize {
-        self.in_step
+        self.wave.in_step
     }
 
     /// Reference stiffness κ of a coordinate in the i-th carried harmonic.
@@ -305,16 +320,22 @@ impl Condensed {
     #[inline]
     pub fn kappa(&self, coordinate: usize, i: usize) -> Complex64 {
         let number = self.blocks[i].number;
-        let share = if number == 1 { self.share[coordinate] } else { 1.0 };
-        self.reference.kappa(self.reference_stiffness[coordinate], number) * share
+        let share = if number == 1 {
+            self.contacts.share[coordinate]
+        } else {
+            1.0
+        };
+        self.reference
+            .kappa(self.contacts.reference_stiffness[coordinate], number)
+            * share
     }
 
     /// K_κ of the i-th carried harmonic without structural damping, with the real part of κ.
     pub(crate) fn stiffness_with_real_kappa(&self, i: usize) -> Result<Csc> {
         let block = &self.blocks[i];
-        let mut reference = block.reference.try_clone()?;
-        reference.values.copy_from_slice(&block.stiffness);
-        for (c, row) in block.rows.iter().enumerate() {
+        let mut reference = block.matrices.reference.try_clone()?;
+        reference.values.copy_from_slice(&block.matrices.stiffness);
+        for (c, row) in block.motions.rows.iter().enumerate() {
             let kappa = self.kappa(c, i).re;
             for &(q, b) in row.terms() {
                 for &(p, a) in row.terms() {
@@ -329,13 +350,13 @@ impl Condensed {
     #[must_use]
     #[inline]
     pub fn stiffness(&self, coordinate: usize) -> f64 {
-        self.stiffness[coordinate]
+        self.contacts.stiffness[coordinate]
     }
 
     /// Largest force of the contacts of a coordinate over its motion at the angular frequency `nu`: stiffness +
     /// ν·damping.
     pub(crate) fn impedance(&self, coordinate: usize, nu: f64) -> f64 {
-        self.stiffness[coordinate] + nu * self.resistance[coordinate]
+        self.contacts.stiffness[coordinate] + nu * self.contacts.resistance[coordinate]
     }
 
     /// Rounding error of the force of a coordinate over the size of its motion if its contacts are near-rigid,
@@ -344,7 +365,7 @@ impl Condensed {
     #[inline]
     pub fn rounding(&self, coordinate: usize) -> f64 {
         if self.is_near_rigid(coordinate) {
-            CONDENSED_ROUNDING * self.stiffness[coordinate]
+            CONDENSED_ROUNDING * self.contacts.stiffness[coordinate]
         } else {
             0.0
         }
@@ -354,7 +375,8 @@ impl Condensed {
     #[must_use]
     #[inline]
     pub fn is_near_rigid(&self, coordinate: usize) -> bool {
-        self.reference_stiffness[coordinate] < self.stiffness[coordinate] && self.exchanges[coordinate].is_none()
+        self.contacts.reference_stiffness[coordinate] < self.contacts.stiffness[coordinate]
+            && self.contacts.exchanges[coordinate].is_none()
     }
 
     /// Whether a coordinate is eliminated from Newton's equations in its stuck or closed state.
@@ -363,15 +385,15 @@ impl Condensed {
     #[must_use]
     #[inline]
     pub fn may_be_eliminated(&self, coordinate: usize) -> bool {
-        self.can_stick[coordinate]
+        self.contacts.can_stick[coordinate]
             && self.reference == Reference::Stuck
-            && self.reference_stiffness[coordinate] >= self.stiffness[coordinate]
+            && self.contacts.reference_stiffness[coordinate] >= self.contacts.stiffness[coordinate]
     }
 
     /// Whether a contact has a static force, so that the static solution is not zero.
     #[must_use]
     pub fn is_preloaded(&self) -> bool {
-        self.preloaded
+        self.contacts.preloaded
     }
 
     /// Factor by which laws without exact events are sampled more finely than by default.

@@ -36,6 +36,20 @@ pub struct HarmonicBlock {
     pub number: usize,
     /// Motion of the next sector over that of this sector: the phase factor of the wave.
     pub next: Complex64,
+    pub matrices: BlockMatrices,
+    /// Modes or poles of the wave along a sweep, where the flexibility is a sum over them.
+    pub source: Option<Source>,
+    /// Why the block has no modes or poles, where `source` is `None`.
+    pub without_source: FlexibilityWay,
+    pub load: BlockLoad,
+    pub motions: BlockMotions,
+    /// The basis on which the matrices are; `None`: they are on the independent degrees of freedom.
+    pub view: Option<ReducedView>,
+}
+
+/// Matrices of the structure in a harmonic, as values on one pattern.
+#[derive(Clone, Debug)]
+pub struct BlockMatrices {
     /// K_h with springs, contacts that never slip, structural damping iD_h, and Wᴴ κ W; its pattern holds C and M too. Harmonics
     /// of one wave with one κ share it.
     pub reference: Arc<Csc>,
@@ -49,16 +63,22 @@ pub struct HarmonicBlock {
     pub mass: Values,
     /// Matrix of the artificial damping of a nonlinear mode.
     pub artificial: Artificial,
-    /// Modes or poles of the wave along a sweep, where the flexibility is a sum over them.
-    pub source: Option<Source>,
-    /// Why the block has no modes or poles, where `source` is `None`.
-    pub without_source: FlexibilityWay,
+    /// Terms of a speed that is tied to the frequency; `None` without.
+    pub tied: Option<TiedValues>,
+}
+
+/// Forces of a harmonic.
+#[derive(Clone, Debug)]
+pub struct BlockLoad {
     /// F_h in units of the length scale.
     pub force: Vec<Complex64>,
     /// Amplitudes over ω² of the forces that grow with ω², in units of the length scale; `None` without such forces.
     pub unbalance: Option<Vec<Complex64>>,
-    /// Terms of a speed that is tied to the frequency; `None` without.
-    pub tied: Option<TiedValues>,
+}
+
+/// Relative motions, as rows of the structure.
+#[derive(Clone, Debug)]
+pub struct BlockMotions {
     /// Rows of W, one per relative coordinate.
     pub rows: Vec<MotionRow>,
     /// Rows of W over the independent degrees of freedom.
@@ -68,8 +88,6 @@ pub struct HarmonicBlock {
     /// Linear springs of a structure on a basis: row of force and row of motion over the independent degrees of
     /// freedom, and stiffness.
     pub springs: Vec<(Row, Row, f64)>,
-    /// The basis on which the matrices are; `None`: they are on the independent degrees of freedom.
-    pub view: Option<ReducedView>,
 }
 
 /// p²K₁ and pG at the entries of the pattern, for Z_h = … + ω² p²K₁ + ihω² pG.
@@ -101,7 +119,8 @@ impl HarmonicBlock {
 
     /// Whether this block and another one hold their matrices in the same memory.
     pub fn shares_matrices(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.reference, &other.reference) && Arc::ptr_eq(&self.mass, &other.mass)
+        Arc::ptr_eq(&self.matrices.reference, &other.matrices.reference)
+            && Arc::ptr_eq(&self.matrices.mass, &other.matrices.mass)
     }
 
     /// K_h of the structure itself, without any spring and without the loss in a complex stiffness, at the entries of the pattern.
@@ -109,11 +128,11 @@ impl HarmonicBlock {
         let Some(view) = &self.view else {
             let structure = model.structure();
             let own = structure.elastic(structure.wave_matrix(MatrixKind::Stiffness, self.number)?)?;
-            return own.aligned(&self.reference);
+            return own.aligned(&self.matrices.reference);
         };
-        let n = self.reference.rows;
+        let n = self.matrices.reference.rows;
         let mut own = try_vec(
-            self.reference.values.len(),
+            self.matrices.reference.values.len(),
             Complex64::ZERO,
             "the matrices per harmonic",
         )?;
@@ -125,14 +144,14 @@ impl HarmonicBlock {
 
     /// Whether a force acts at any frequency.
     pub fn has_force(&self) -> bool {
-        let unbalance = self.unbalance.iter().flatten();
-        self.force.iter().chain(unbalance).any(|f| *f != Complex64::ZERO)
+        let unbalance = self.load.unbalance.iter().flatten();
+        self.load.force.iter().chain(unbalance).any(|f| *f != Complex64::ZERO)
     }
 
     /// F_h at an angular frequency.
     pub fn force_at(&self, omega: f64, force: &mut [Complex64]) {
-        force.copy_from_slice(&self.force);
-        for (f, u) in force.iter_mut().zip(self.unbalance.iter().flatten()) {
+        force.copy_from_slice(&self.load.force);
+        for (f, u) in force.iter_mut().zip(self.load.unbalance.iter().flatten()) {
             *f += u * (omega * omega);
         }
     }
@@ -140,10 +159,10 @@ impl HarmonicBlock {
     /// y ← M x with the mass matrix of the block.
     pub fn multiply_mass(&self, x: &[Complex64], y: &mut [Complex64]) {
         y.fill(Complex64::ZERO);
-        let pattern = &self.reference;
+        let pattern = &self.matrices.reference;
         for (j, x) in x.iter().enumerate() {
             for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
-                y[pattern.row_idx[at]] += self.mass[at] * x;
+                y[pattern.row_idx[at]] += self.matrices.mass[at] * x;
             }
         }
     }
@@ -201,13 +220,13 @@ pub(crate) fn shared_block(
         copy(values).map(Arc::new)
     };
     let rows = rows_of(model, representatives, number)?;
-    let stiffness = share(&known.stiffness)?;
-    let structural = known.structural.as_ref().map(share).transpose()?;
+    let stiffness = share(&known.matrices.stiffness)?;
+    let structural = known.matrices.structural.as_ref().map(share).transpose()?;
     let has_same_kappa = (0..rows.len()).all(|c| kappa(c, number) == kappa(c, known.number));
     let reference = if form == Form::Plain && has_same_kappa {
-        Arc::clone(&known.reference)
+        Arc::clone(&known.matrices.reference)
     } else {
-        let mut reference = known.reference.try_clone()?;
+        let mut reference = known.matrices.reference.try_clone()?;
         reference.values.copy_from_slice(&stiffness);
         for (v, d) in reference
             .values
@@ -225,15 +244,15 @@ pub(crate) fn shared_block(
         }
         Arc::new(reference)
     };
-    let tied = known.tied.as_ref().map(|tied| {
+    let tied = known.matrices.tied.as_ref().map(|tied| {
         Ok(TiedValues {
             stiffness: copy(&tied.stiffness)?,
             gyroscopic: copy(&tied.gyroscopic)?,
         })
     });
     let matrices = Matrices {
-        damping: share(&known.damping)?,
-        mass: share(&known.mass)?,
+        damping: share(&known.matrices.damping)?,
+        mass: share(&known.matrices.mass)?,
         tied: tied.transpose()?,
         stiffness,
         structural,
@@ -265,21 +284,27 @@ impl Matrices {
         Ok(HarmonicBlock {
             number,
             next: structure.phase(number, 1),
-            reference: self.reference,
-            stiffness: self.stiffness,
-            structural: self.structural,
-            damping: self.damping,
-            mass: self.mass,
-            artificial: Artificial::None,
+            matrices: BlockMatrices {
+                reference: self.reference,
+                stiffness: self.stiffness,
+                structural: self.structural,
+                damping: self.damping,
+                mass: self.mass,
+                artificial: Artificial::None,
+                tied: self.tied,
+            },
             source: None,
             without_source: FlexibilityWay::SingleFrequency,
-            force: try_vec(structure.ndof(), Complex64::ZERO, "the forces")?,
-            unbalance: None,
-            tied: self.tied,
-            rows: over_dofs(&rows)?,
-            structural_rows: rows,
-            linear_rows: over_dofs(&rows_of(model, &contact_classes.linear, number)?)?,
-            springs: Vec::new(),
+            load: BlockLoad {
+                force: try_vec(structure.ndof(), Complex64::ZERO, "the forces")?,
+                unbalance: None,
+            },
+            motions: BlockMotions {
+                rows: over_dofs(&rows)?,
+                structural_rows: rows,
+                linear_rows: over_dofs(&rows_of(model, &contact_classes.linear, number)?)?,
+                springs: Vec::new(),
+            },
             view: None,
         })
     }
@@ -396,17 +421,20 @@ mod tests {
             let made = harmonic_block(model, number, contacts, |c| kappa(c, number), &interrupt).unwrap();
             if let Some(known) = of_same_wave(model, number, &blocks.iter()) {
                 let block = shared_block(model, number, known, contacts, kappa).unwrap();
-                assert_eq!(block.reference.row_idx, made.reference.row_idx);
-                assert!(close(&block.reference.values, &made.reference.values), "{number}");
+                assert_eq!(block.matrices.reference.row_idx, made.matrices.reference.row_idx);
+                assert!(
+                    close(&block.matrices.reference.values, &made.matrices.reference.values),
+                    "{number}"
+                );
                 for (a, b) in [
-                    (&block.stiffness, &made.stiffness),
-                    (&block.damping, &made.damping),
-                    (&block.mass, &made.mass),
+                    (&block.matrices.stiffness, &made.matrices.stiffness),
+                    (&block.matrices.damping, &made.matrices.damping),
+                    (&block.matrices.mass, &made.matrices.mass),
                 ] {
                     assert!(close(a, b), "{number}");
                 }
-                assert_eq!(block.structural.is_some(), made.structural.is_some());
-                for (a, b) in block.structural.iter().zip(&made.structural) {
+                assert_eq!(block.matrices.structural.is_some(), made.matrices.structural.is_some());
+                for (a, b) in block.matrices.structural.iter().zip(&made.matrices.structural) {
                     assert!(close(a, b), "{number}");
                 }
                 shared += 1;

@@ -26,20 +26,20 @@ impl Condensed {
         options: &SolverOptions,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Self>> {
-        let active = &self.contact_classes.active;
+        let active = &self.contacts.classes.active;
         let set = carried(model, options, &forced_harmonics(model, options)?, active)?;
         let unknowns = self.coordinates() * set.packed_len();
         if self.is_reduced() || quicker_reference(model, unknowns) != self.reference {
             return Ok(None);
         }
-        if self.tuned.is_some() {
+        if self.wave.tuned.is_some() {
             within_matrices(options.memory_limit, model, set.numbers())?;
         } else {
             within_directly(options.memory_limit, model, set.numbers())?;
         }
         let (_, representatives) = assign_coordinates(model, active, interrupt)?;
-        let contacts = (&self.contact_classes, &representatives[..]);
-        let kappa = |c: usize, number: usize| self.reference.kappa(self.reference_stiffness[c], number);
+        let contacts = (&self.contacts.classes, &representatives[..]);
+        let kappa = |c: usize, number: usize| self.reference.kappa(self.contacts.reference_stiffness[c], number);
         let mut blocks = Vec::new();
         for (i, &number) in set.numbers().iter().enumerate() {
             interrupt.part(Phase::Condensation, i, set.numbers().len())?;
@@ -49,21 +49,20 @@ impl Condensed {
                 None => harmonic_block(model, number, contacts, |c| kappa(c, number), interrupt)?,
             };
             if let Some(own) = self.blocks.iter().find(|own| own.number == number) {
-                block.force.copy_from_slice(&own.force);
-                let unbalance = own.unbalance.as_ref();
-                block.unbalance = unbalance.map(|f| try_copy(f, CONTEXT)).transpose()?;
+                block.load.force.copy_from_slice(&own.load.force);
+                let unbalance = own.load.unbalance.as_ref();
+                block.load.unbalance = unbalance.map(|f| try_copy(f, CONTEXT)).transpose()?;
             }
             try_push(&mut blocks, block, CONTEXT)?;
         }
-        let tuned = match (&self.tuned, self.wheel) {
+        let tuned = match (&self.wave.tuned, self.wave.wheel) {
             (Some(_), Some((sectors, _))) => TunedPlan::new(&blocks, sectors, interrupt)?.map(Arc::new),
             _ => None,
         };
-        Ok(Some(Self {
-            tuned,
-            refinement: options.refinement,
-            ..self.with_blocks(set, blocks)?
-        }))
+        let mut more = self.with_blocks(set, blocks)?;
+        more.wave.tuned = tuned;
+        more.refinement = options.refinement;
+        Ok(Some(more))
     }
 }
 
@@ -101,7 +100,7 @@ mod tests {
             assert_eq!(more.length().to_bits(), many.length().to_bits());
             let [mut a, mut b] = [&more, &many].map(|of| Workspace::new(of, Some(4)).unwrap());
             for (i, (own, block)) in more.blocks().iter().zip(many.blocks()).enumerate() {
-                assert_eq!(own.force, block.force);
+                assert_eq!(own.load.force, block.load.force);
                 let table = a.evaluate(&more, i, 0.8, true, &interrupt).unwrap();
                 let exact = b.evaluate(&many, i, 0.8, true, &interrupt).unwrap();
                 let parts = [(&table.value, &exact.value), (&table.slope, &exact.slope)];

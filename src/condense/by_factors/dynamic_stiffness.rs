@@ -51,18 +51,20 @@ impl Plain {
     fn new(condensed: &Condensed, columns: usize) -> Result<Self> {
         let (mut z, mut patterns) = (Vec::<Csc>::new(), Vec::new());
         for block in condensed.blocks() {
-            let of_block = |z: &Csc| z.col_ptr == block.reference.col_ptr && z.row_idx == block.reference.row_idx;
+            let of_block = |z: &Csc| {
+                z.col_ptr == block.matrices.reference.col_ptr && z.row_idx == block.matrices.reference.row_idx
+            };
             let known = z.iter().position(of_block);
             try_push(&mut patterns, known.unwrap_or(z.len()), CONTEXT)?;
             if known.is_none() {
-                try_push(&mut z, block.reference.try_clone()?, CONTEXT)?;
+                try_push(&mut z, block.matrices.reference.try_clone()?, CONTEXT)?;
             }
         }
         let Some(first) = condensed.blocks().first() else {
             return fail!(Internal, "no harmonic is carried");
         };
         Ok(Self {
-            factor: Factor::new(&first.reference, columns)?,
+            factor: Factor::new(&first.matrices.reference, columns)?,
             z,
             patterns,
         })
@@ -173,7 +175,7 @@ impl DynamicStiffness {
 
     /// The current factors, if they solve many right sides side by side, and a table of so many columns is not to be refined.
     pub(crate) fn slender(&mut self, condensed: &Condensed, i: usize, columns: usize) -> Option<&mut SlenderLu> {
-        let may_refine = condensed.blocks()[i].reference.values.len() * columns <= CHEAP_TO_REFINE;
+        let may_refine = condensed.blocks()[i].matrices.reference.values.len() * columns <= CHEAP_TO_REFINE;
         match &mut self.plain {
             Some(plain) if self.tuned_at.is_none() && !may_refine => plain.factor.slender(),
             _ => None,
@@ -191,7 +193,7 @@ impl DynamicStiffness {
 
     /// Whether rounding of the i-th harmonic's solutions `columns`, under loads of about 1, matters and is cheap to remove.
     pub fn should_refine(&self, condensed: &Condensed, i: usize, columns: &[Complex64]) -> bool {
-        let entries = condensed.blocks()[i].reference.values.len();
+        let entries = condensed.blocks()[i].matrices.reference.values.len();
         let count = columns.len() / condensed.ndof();
         let size = |z: &Complex64| z.re.abs().max(z.im.abs());
         let stiff = if entries * count <= QUICK_TO_REFINE {
@@ -259,7 +261,9 @@ impl DynamicStiffness {
     /// Relative change of a solution x of Z x = b by the rounding of Z, which its factors do not show: ε‖Z‖‖x‖/‖b‖; 0 where it is not to
     /// be removed. A mode is near a resonance of Z, where that is large in any structure.
     fn rounding_of_matrix(&self, block: &HarmonicBlock, b: &[Complex64], x: &[Complex64]) -> f64 {
-        if block.reference.values.len() > QUICK_TO_REFINE || !matches!(block.artificial, Artificial::None) {
+        if block.matrices.reference.values.len() > QUICK_TO_REFINE
+            || !matches!(block.matrices.artificial, Artificial::None)
+        {
             return 0.0;
         }
         let load = largest(b);
@@ -289,7 +293,7 @@ impl DynamicStiffness {
                 *remainder = sum.subtracted_from(*remainder);
             }
         } else {
-            let pattern = &block.reference;
+            let pattern = &block.matrices.reference;
             for (j, x) in x.iter().enumerate() {
                 for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
                     self.remainder[pattern.row_idx[at]] -= sum.at(block, at) * x;
@@ -301,11 +305,11 @@ impl DynamicStiffness {
         self.remainder = remainder;
         solved.map_err(|e| at_harmonic(e, block, at.0))?;
         let mut change = (0.0_f64, 0.0_f64);
-        for row in &block.rows {
+        for row in &block.motions.rows {
             change.0 = change.0.max(row.along(&self.remainder).norm());
             change.1 = change.1.max(row.along(x).norm());
         }
-        if block.rows.is_empty() {
+        if block.motions.rows.is_empty() {
             change = (largest(&self.remainder), largest(x));
         }
         for (x, d) in x.iter_mut().zip(&self.remainder) {
@@ -357,7 +361,7 @@ impl Combination {
             own: Complex64::ZERO,
             tied: [Complex64::ZERO; 2],
         };
-        match (by, &block.artificial) {
+        match (by, &block.matrices.artificial) {
             (Variable::Omega, artificial) => Self {
                 damping: ih,
                 mass: match artificial {
@@ -379,15 +383,15 @@ impl Combination {
     /// sums ← Z x without rounding between its terms: the matrices are multiplied one by one, since their sum is
     /// rounded again at each frequency.
     fn exact_product(&self, block: &HarmonicBlock, x: &[Complex64], sums: &mut [ComplexSum], part: &mut [ComplexSum]) {
-        let own = match &block.artificial {
+        let own = match &block.matrices.artificial {
             Artificial::Stiffness(own) => Some((self.own, own)),
             Artificial::None | Artificial::Mass => None,
         };
-        let tied = block.tied.as_ref();
+        let tied = block.matrices.tied.as_ref();
         let terms = [
-            Some((self.reference.into(), &block.reference.values)),
-            Some((self.damping, &block.damping)),
-            Some((self.mass, &block.mass)),
+            Some((self.reference.into(), &block.matrices.reference.values)),
+            Some((self.damping, &block.matrices.damping)),
+            Some((self.mass, &block.matrices.mass)),
             own,
             tied.map(|tied| (self.tied[0], &tied.stiffness)),
             tied.map(|tied| (self.tied[1], &tied.gyroscopic)),
@@ -395,7 +399,7 @@ impl Combination {
         sums.fill(ComplexSum::default());
         for (factor, values) in terms.into_iter().flatten() {
             part.fill(ComplexSum::default());
-            quadratic::product(&block.reference, values, x, part);
+            quadratic::product(&block.matrices.reference, values, x, part);
             for (sum, part) in sums.iter_mut().zip(part.iter()) {
                 sum.add_multiple(*part, factor);
             }
@@ -416,12 +420,13 @@ impl Combination {
 
     #[inline]
     fn at(&self, block: &HarmonicBlock, at: usize) -> Complex64 {
-        let mut z =
-            self.reference * block.reference.values[at] + self.damping * block.damping[at] + self.mass * block.mass[at];
-        if let Some(tied) = &block.tied {
+        let mut z = self.reference * block.matrices.reference.values[at]
+            + self.damping * block.matrices.damping[at]
+            + self.mass * block.matrices.mass[at];
+        if let Some(tied) = &block.matrices.tied {
             z += self.tied[0] * tied.stiffness[at] + self.tied[1] * tied.gyroscopic[at];
         }
-        match &block.artificial {
+        match &block.matrices.artificial {
             Artificial::Stiffness(own) => z + self.own * own[at],
             Artificial::None | Artificial::Mass => z,
         }
@@ -440,7 +445,7 @@ pub(crate) fn add_slope_product(
     y: &mut [Complex64],
 ) {
     let block = &condensed.blocks()[i];
-    let pattern = &block.reference;
+    let pattern = &block.matrices.reference;
     let sum = Combination::slope(block, omega, damping, by);
     for j in 0..x.len() {
         for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
@@ -461,7 +466,7 @@ pub(crate) fn fill_slope(block: &HarmonicBlock, (omega, damping): (f64, f64), en
 
 /// y ← A x for the entries of a matrix in the order of the pattern of a harmonic.
 pub(crate) fn multiply(block: &HarmonicBlock, entries: &[Complex64], x: &[Complex64], y: &mut [Complex64]) {
-    let pattern = &block.reference;
+    let pattern = &block.matrices.reference;
     y.fill(Complex64::ZERO);
     for (x, ends) in x.iter().zip(pattern.col_ptr.windows(2)) {
         let column = ends[0]..ends[1];

@@ -102,6 +102,7 @@ impl Condensed {
     /// Highest harmonic that is of use beside motions with a mass whose sticks ring: with more of them their forces would be late twice.
     pub(crate) fn highest_below_rings(&self) -> usize {
         let with_mass = self
+            .contacts
             .exchanges
             .iter()
             .flatten()
@@ -114,7 +115,10 @@ impl Condensed {
     #[must_use]
     pub fn exchanged(&self) -> Exchanged {
         let finite = |exchange: &Exchange| exchange.compliance > 0.0;
-        match (self.has_exchanges(), self.exchanges.iter().flatten().any(finite)) {
+        match (
+            self.has_exchanges(),
+            self.contacts.exchanges.iter().flatten().any(finite),
+        ) {
             (false, _) => Exchanged::None,
             (true, false) => Exchanged::Rigid,
             (true, true) => Exchanged::NearRigid,
@@ -123,13 +127,14 @@ impl Condensed {
 
     /// Whether some motion is exchanged.
     pub fn has_exchanges(&self) -> bool {
-        self.exchanges.iter().any(Option::is_some)
+        self.contacts.exchanges.iter().any(Option::is_some)
     }
 
     /// Whether some motion is exchanged, each for the force on a mass.
     pub(crate) fn has_masses(&self) -> bool {
         self.has_exchanges()
             && self
+                .contacts
                 .exchanges
                 .iter()
                 .flatten()
@@ -139,13 +144,13 @@ impl Condensed {
     /// The exchange of a coordinate.
     #[must_use]
     pub fn exchange_of(&self, coordinate: usize) -> Option<Exchange> {
-        self.exchanges[coordinate]
+        self.contacts.exchanges[coordinate]
     }
 
     /// Whether the motion of a coordinate is exchanged.
     #[must_use]
     pub fn is_exchanged(&self, coordinate: usize) -> bool {
-        self.exchanges[coordinate].is_some()
+        self.contacts.exchanges[coordinate].is_some()
     }
 
     /// For each coordinate, whether its motion is exchanged; empty where no motion is.
@@ -154,7 +159,7 @@ impl Condensed {
     /// `OutOfMemory`.
     pub fn rates(&self) -> Result<Vec<bool>> {
         let mut rates = Vec::new();
-        for exchange in self.exchanges.iter().filter(|_| self.has_exchanges()) {
+        for exchange in self.contacts.exchanges.iter().filter(|_| self.has_exchanges()) {
             try_push(&mut rates, exchange.is_some(), CONTEXT)?;
         }
         Ok(rates)
@@ -169,7 +174,7 @@ impl Condensed {
         let mut is_set = try_vec(n, false, CONTEXT)?;
         for i in 0..self.set.numbers().len() {
             let number = self.set.numbers()[i] as f64;
-            let left = |c: &usize| self.exchanges[*c].is_some() && !is_set[*c];
+            let left = |c: &usize| self.contacts.exchanges[*c].is_some() && !is_set[*c];
             if number == 0.0 || !(0..n).any(|c| left(&c)) {
                 continue;
             }
@@ -177,7 +182,7 @@ impl Condensed {
             for c in 0..n {
                 let at_nominal = flexibility[c * n + c].norm();
                 // Sides may move alike in a harmonic; where they do in all, α stays as it is.
-                let Some(mut exchange) = self.exchanges[c].filter(|_| !is_set[c] && at_nominal > 0.0) else {
+                let Some(mut exchange) = self.contacts.exchanges[c].filter(|_| !is_set[c] && at_nominal > 0.0) else {
                     continue;
                 };
                 exchange.stiffness = (E * NOMINAL * at_nominal).recip();
@@ -195,11 +200,11 @@ impl Condensed {
                     exchange.stiffness = (NOMINAL * NOMINAL * at_nominal).recip();
                     exchange.mass_at = Some(omega / NOMINAL);
                 }
-                self.exchanges[c] = Some(exchange);
+                self.contacts.exchanges[c] = Some(exchange);
                 is_set[c] = true;
             }
         }
-        for (stiffness, exchange) in self.stiffness.iter_mut().zip(&self.exchanges) {
+        for (stiffness, exchange) in self.contacts.stiffness.iter_mut().zip(&self.contacts.exchanges) {
             if let Some(exchange) = exchange {
                 *stiffness = exchange.stiffness;
             }
@@ -211,7 +216,7 @@ impl Condensed {
     pub(crate) fn exchange(&self, i: usize, omega: f64, table: &mut Table) {
         let number = self.set.numbers()[i];
         let outputs = self.coordinates() + 1;
-        for (c, exchange) in self.exchanges.iter().enumerate() {
+        for (c, exchange) in self.contacts.exchanges.iter().enumerate() {
             let Some(exchange) = exchange else { continue };
             let (s, slope_of_s) = exchange.rate(number, omega);
             let entries = table.value.iter_mut().zip(&mut table.slope);
@@ -236,7 +241,7 @@ impl Condensed {
     pub fn relative_motion(&self, motion: &[f64], forces: &[f64], omega: f64) -> Result<Vec<f64>> {
         let mut found = try_copy(motion, CONTEXT)?;
         let m = self.set.packed_len();
-        for (c, exchange) in self.exchanges.iter().enumerate() {
+        for (c, exchange) in self.contacts.exchanges.iter().enumerate() {
             let Some(exchange) = exchange else { continue };
             for (i, &number) in self.set.numbers().iter().enumerate() {
                 let y = exchange.motion(
@@ -255,7 +260,9 @@ impl Condensed {
     pub fn exchange_start(&self, motion: &mut [f64]) {
         let m = self.set.packed_len();
         for (c, motion) in motion.chunks_exact_mut(m).enumerate() {
-            let Some(exchange) = self.exchanges[c] else { continue };
+            let Some(exchange) = self.contacts.exchanges[c] else {
+                continue;
+            };
             // About the middle of the range.
             let omega = exchange.mass_at.unwrap_or(1.0);
             for (i, &number) in self.set.numbers().iter().enumerate() {

@@ -208,7 +208,7 @@ impl Workspace {
         let block = &condensed.blocks()[i];
         let n = condensed.ndof();
         let outputs = condensed.coordinates() + 1;
-        let rows = block.rows.iter().chain(core::iter::once(&self.responses[i]));
+        let rows = block.motions.rows.iter().chain(core::iter::once(&self.responses[i]));
         let tables = self.table.value.chunks_exact_mut(outputs);
         for (column, table) in self.columns.chunks_exact(n).zip(tables) {
             read(rows.clone(), column, table);
@@ -277,7 +277,7 @@ impl Workspace {
     ) -> Result<[Vec<Complex64>; 2]> {
         let block = &condensed.blocks()[i];
         let n = condensed.ndof();
-        let rows = block.rows.iter().chain(core::iter::once(&self.responses[i]));
+        let rows = block.motions.rows.iter().chain(core::iter::once(&self.responses[i]));
         let outputs = || try_vec(condensed.coordinates() + 1, Complex64::ZERO, CONTEXT);
         let [mut value, mut slope] = [outputs()?, outputs()?];
         let dynamic = made(&mut self.dynamic, condensed)?;
@@ -300,7 +300,7 @@ impl Workspace {
             for load in &mut self.load {
                 *load = -*load;
             }
-            if let Some(unbalance) = block.unbalance.as_ref().filter(|_| k == condensed.coordinates()) {
+            if let Some(unbalance) = block.load.unbalance.as_ref().filter(|_| k == condensed.coordinates()) {
                 for (load, u) in self.load.iter_mut().zip(unbalance) {
                     *load += 2.0 * omega * u;
                 }
@@ -420,7 +420,7 @@ impl Workspace {
         dynamic.factor(condensed, i, omega.into(), self.damping, interrupt)?;
         let block = &condensed.blocks()[i];
         block.force_at(omega, &mut self.load);
-        for (row, w) in block.rows.iter().zip(contact_force) {
+        for (row, w) in block.motions.rows.iter().zip(contact_force) {
             for &(p, a) in row.terms() {
                 self.load[p] -= a.conj() * w;
             }
@@ -449,10 +449,10 @@ impl Workspace {
         for z in dx.iter_mut() {
             *z *= -d_omega;
         }
-        for (z, u) in dx.iter_mut().zip(block.unbalance.iter().flatten()) {
+        for (z, u) in dx.iter_mut().zip(block.load.unbalance.iter().flatten()) {
             *z += 2.0 * omega * u * d_omega;
         }
-        for (row, dw) in block.rows.iter().zip(dw) {
+        for (row, dw) in block.motions.rows.iter().zip(dw) {
             for &(p, a) in row.terms() {
                 dx[p] -= a.conj() * dw;
             }
@@ -475,7 +475,7 @@ pub(crate) fn made<'a>(
 
 /// The k-th column of B: the unit force of a contact, the last one the excitation at `omega`.
 fn fill_load(block: &HarmonicBlock, k: usize, omega: f64, load: &mut [Complex64]) {
-    let Some(row) = block.rows.get(k) else {
+    let Some(row) = block.motions.rows.get(k) else {
         return block.force_at(omega, load);
     };
     load.fill(Complex64::ZERO);

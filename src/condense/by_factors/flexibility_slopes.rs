@@ -32,14 +32,14 @@ impl Workspace {
             self.products = try_vec(n * PRODUCTS.min(outputs), Complex64::ZERO, CONTEXT)?;
         }
         self.rows.fill(Complex64::ZERO);
-        let rows = block.rows.iter().chain([&self.responses[i]]);
+        let rows = block.motions.rows.iter().chain([&self.responses[i]]);
         for (column, row) in self.rows.chunks_exact_mut(n).zip(rows) {
             for &(p, a) in row.terms() {
                 column[p] += a;
             }
         }
         made(&mut self.dynamic, condensed)?.solve(condensed, i, omega, &mut self.rows, true, interrupt)?;
-        let entries = block.reference.values.len();
+        let entries = block.matrices.reference.values.len();
         if self.slope.len() < entries {
             self.slope = try_vec(entries, Complex64::ZERO, CONTEXT)?;
         }
@@ -57,7 +57,7 @@ impl Workspace {
             }
             multiply_adjoint(&self.rows, products, table, n);
         }
-        if let Some(unbalance) = &block.unbalance {
+        if let Some(unbalance) = &block.load.unbalance {
             // The last column is that of the excitation, whose own derivative is 2ω times the unbalance.
             let last = self.table.slope.len() - outputs;
             for (slope, solved) in self.table.slope[last..].iter_mut().zip(self.rows.chunks_exact(n)) {
@@ -113,7 +113,7 @@ impl Workspace {
 
     /// 2ω rᵀU to the slope of the response by the excitation, after [`Self::move_response`].
     pub(crate) fn add_slope_of_unbalance(&mut self, block: &HarmonicBlock, omega: f64) {
-        if let (Some(unbalance), Some(last)) = (&block.unbalance, self.table.slope.last_mut()) {
+        if let (Some(unbalance), Some(last)) = (&block.load.unbalance, self.table.slope.last_mut()) {
             let product = self.load.iter().zip(unbalance).map(|(a, b)| a * b).sum::<Complex64>();
             *last += 2.0 * omega * product;
         }
@@ -133,15 +133,21 @@ impl Workspace {
         let adjoint = &mut self.products[..n];
         made(&mut self.dynamic, condensed)?.solve(condensed, i, omega, adjoint, true, interrupt)?;
         let slopes = self.table.slope.iter_mut().skip(outputs - 1).step_by(outputs);
-        for (slope, row) in slopes.zip(&block.rows) {
+        for (slope, row) in slopes.zip(&block.motions.rows) {
             *slope = -row.terms().map(|&(p, a)| a.conj() * adjoint[p]).sum::<Complex64>();
         }
         let Some(last) = self.table.slope.last_mut() else {
             return Ok(());
         };
         let (factor, by_omega) = (omega * omega, 2.0 * omega);
-        *last -= block.force.iter().zip(&*adjoint).map(|(f, q)| f * q).sum::<Complex64>();
-        for ((u, q), r) in block.unbalance.iter().flatten().zip(&*adjoint).zip(&self.load) {
+        *last -= block
+            .load
+            .force
+            .iter()
+            .zip(&*adjoint)
+            .map(|(f, q)| f * q)
+            .sum::<Complex64>();
+        for ((u, q), r) in block.load.unbalance.iter().flatten().zip(&*adjoint).zip(&self.load) {
             *last += u * (by_omega * r - factor * q);
         }
         Ok(())
@@ -176,7 +182,7 @@ impl Workspace {
         }
         let found = self.recover_along(condensed, (i, omega), (&[], 1.0), x, dx, interrupt);
         let first = table.value.len() - (condensed.coordinates() + 1);
-        let rows = || block.rows.iter().chain([&self.responses[i]]);
+        let rows = || block.motions.rows.iter().chain([&self.responses[i]]);
         for (values, motion) in [(&mut table.value, &*x), (&mut table.slope, &*dx)] {
             values[..first].fill(Complex64::ZERO);
             read(rows(), motion, &mut values[first..]);
@@ -207,7 +213,7 @@ impl Workspace {
         let solved = self.solve_under(condensed, (i, omega), contact_force, x, interrupt);
         let found = solved.and_then(|()| self.recover_along(condensed, (i, omega), (&[], 1.0), x, dx, interrupt));
         read(
-            condensed.blocks()[i].rows.iter().chain([&self.responses[i]]),
+            condensed.blocks()[i].motions.rows.iter().chain([&self.responses[i]]),
             dx,
             change,
         );

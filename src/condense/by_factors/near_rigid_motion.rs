@@ -41,7 +41,7 @@ pub fn correct(
     if rigid.is_empty() {
         return Ok(());
     }
-    let rows = &condensed.blocks()[i].rows;
+    let rows = &condensed.blocks()[i].motions.rows;
     let (n, order) = (x.len(), 2 * rigid.len());
     let columns = workspace.contact_columns(condensed, i, omega, interrupt)?;
     let mut system = LeastSquares::new(order, interrupt)?;

@@ -40,7 +40,7 @@ impl Workspace {
         let dynamic = made(&mut self.dynamic, condensed)?;
         dynamic.solve(condensed, i, omega, &mut self.columns, false, interrupt)?;
         let mut ports = Vec::new();
-        for row in block.rows.iter().chain([&self.responses[i]]) {
+        for row in block.motions.rows.iter().chain([&self.responses[i]]) {
             try_push(&mut ports, row.terms().as_slice(), CONTEXT)?;
         }
         let outputs = coordinates + 1;
@@ -52,7 +52,7 @@ impl Workspace {
         slender.flexibility(&ports, (&mut self.table.value, outputs), (moved, &mut along), interrupt)?;
         let last = coordinates * outputs;
         read(
-            block.rows.iter().chain([&self.responses[i]]),
+            block.motions.rows.iter().chain([&self.responses[i]]),
             &self.columns,
             &mut self.table.value[last..],
         );

@@ -115,7 +115,7 @@ impl ModalRows {
         let seen = |shapes: &[Complex64]| -> Result<Vec<Complex64>> {
             let mut seen = try_vec(rows * source.len(), Complex64::ZERO, CONTEXT)?;
             for (column, shape) in seen.chunks_exact_mut(rows).zip(shapes.chunks_exact(n)) {
-                for (to, row) in column.iter_mut().zip(&block.rows) {
+                for (to, row) in column.iter_mut().zip(&block.motions.rows) {
                     *to = row.along(shape);
                 }
                 column[coordinates] = observed.along(shape);
@@ -133,7 +133,7 @@ impl ModalRows {
             Source::Poles(_) => seen(adjoints)?,
         };
         Ok(Self {
-            matrices: (Arc::clone(&block.reference), Arc::clone(&block.mass)),
+            matrices: (Arc::clone(&block.matrices.reference), Arc::clone(&block.matrices.mass)),
             next: block.next,
             coordinates,
             rows,
@@ -173,8 +173,8 @@ impl ModalRows {
         };
         of_block
             && self.next == block.next
-            && Arc::ptr_eq(&self.matrices.0, &block.reference)
-            && Arc::ptr_eq(&self.matrices.1, &block.mass)
+            && Arc::ptr_eq(&self.matrices.0, &block.matrices.reference)
+            && Arc::ptr_eq(&self.matrices.1, &block.matrices.mass)
     }
 
     /// Springs with rows of their own.

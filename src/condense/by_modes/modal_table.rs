@@ -113,8 +113,8 @@ impl ModalTable {
     /// `OutOfMemory`.
     pub fn new((condensed, i): (&Condensed, usize), rows: Arc<ModalRows>, tolerance: f64) -> Result<Self> {
         let block = &condensed.blocks()[i];
-        let force = rows.forced(&block.force)?;
-        let unbalance = rows.forced(block.unbalance.as_deref().unwrap_or(&[]))?;
+        let force = rows.forced(&block.load.force)?;
+        let unbalance = rows.forced(block.load.unbalance.as_deref().unwrap_or(&[]))?;
         let beside = (rows.springs(), rows.dampers().len());
         let coefficients = Coefficients::new(condensed, i, beside, rows.source().is_damped_by_stiffness())?;
         let single = match rows.source() {

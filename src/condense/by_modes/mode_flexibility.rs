@@ -75,14 +75,15 @@ impl ModeFlexibility {
         let (mut sums, mut agree, mut waves) = (Vec::new(), Vec::new(), Vec::<Arc<ModalRows>>::new());
         for (i, block) in condensed.blocks().iter().enumerate() {
             let of_harmonic = match &block.source {
-                Some(source @ Source::Modes(_)) if !matches!(block.artificial, Artificial::None) => {
+                Some(source @ Source::Modes(_)) if !matches!(block.matrices.artificial, Artificial::None) => {
                     let known = waves.iter().position(|rows| rows.are_of(block, source));
                     let wave = known.unwrap_or(waves.len());
                     if known.is_none() {
                         let mut row = [None; MOTION_TERMS];
                         row[0] = Some((reference_dof, Complex64::ONE));
                         let row = block.row(&row)?;
-                        let springs = ModeSums::damps_springs(&block.artificial) || source.is_damped_by_stiffness();
+                        let springs =
+                            ModeSums::damps_springs(&block.matrices.artificial) || source.is_damped_by_stiffness();
                         let rows = ModalRows::with_rows((condensed, i), &row, source.clone(), springs)?;
                         try_push(&mut waves, Arc::new(rows), CONTEXT)?;
                         try_push(&mut agree, false, CONTEXT)?;
@@ -289,7 +290,7 @@ impl Direct {
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         let n = self.x.len();
-        let rows = &condensed.blocks()[i].rows;
+        let rows = &condensed.blocks()[i].motions.rows;
         match self.dynamic.factor(condensed, i, omega.into(), damping, interrupt) {
             // A body that moves no contact may have the frequency of the mode: at rest it is beside that, too.
             Err(e) if e.status == Status::Singular => {
@@ -362,7 +363,7 @@ impl Direct {
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         self.load.fill(Complex64::ZERO);
-        for &(p, a) in condensed.blocks()[i].rows[coordinate].terms() {
+        for &(p, a) in condensed.blocks()[i].motions.rows[coordinate].terms() {
             self.load[p] += a.conj();
         }
         let n = self.x.len();
@@ -372,7 +373,7 @@ impl Direct {
 
     /// Reads the relative motions of the contacts from the motions on all degrees of freedom.
     fn read(&self, (condensed, i): (&Condensed, usize), value: &mut [Complex64], relative: &mut [Complex64]) {
-        let rows = &condensed.blocks()[i].rows;
+        let rows = &condensed.blocks()[i].motions.rows;
         let motions = |to: &mut [Complex64], x: &[Complex64]| {
             for (to, row) in to.iter_mut().zip(rows) {
                 *to = row.along(x);

@@ -66,6 +66,12 @@ pub(crate) struct SumWork {
     plain: Vec<Complex64>,
     table: Table,
     low_rank: LowRank,
+    vectors: SumVectors,
+    blocks: SumBlocks,
+}
+
+/// Motions and forces of a sum.
+pub(crate) struct SumVectors {
     /// Modal motion ξ, and its derivatives by frequency and damping ratio.
     motion: Vec<Complex64>,
     rates: [Vec<Complex64>; 2],
@@ -73,6 +79,10 @@ pub(crate) struct SumWork {
     of_modes: Vec<Complex64>,
     force: Vec<Complex64>,
     seen: Vec<Complex64>,
+}
+
+/// Memory of products.
+pub(crate) struct SumBlocks {
     memory: Vec<Complex64>,
     /// Motion of each row of B.
     inner: Vec<Complex64>,
@@ -111,7 +121,7 @@ impl ModeSums {
         };
         let modes = Arc::clone(modes);
         let block = &condensed.blocks()[i];
-        let is_mass_type = matches!(block.artificial, Artificial::Mass);
+        let is_mass_type = matches!(block.matrices.artificial, Artificial::Mass);
         let is_damped = modes.is_damped_by_stiffness() || !is_mass_type;
         Ok(Some(Self {
             coefficients: Coefficients::new(condensed, i, (rows.springs(), rows.dampers().len()), is_damped)?,
@@ -144,21 +154,25 @@ impl ModeSums {
             plain: zeros(rows * rows)?,
             table: Table::new(coordinates)?,
             low_rank: LowRank::new(coordinates, self.coefficients.len())?,
-            motion: zeros(n)?,
-            rates: [zeros(n)?, zeros(n)?],
-            of_modes: zeros(n)?,
-            force: zeros(rows)?,
-            seen: zeros(rows)?,
-            memory: zeros(rows)?,
-            inner: zeros(self.coefficients.len())?,
-            whole: zeros(n)?,
-            turned: zeros(rows)?,
+            vectors: SumVectors {
+                motion: zeros(n)?,
+                rates: [zeros(n)?, zeros(n)?],
+                of_modes: zeros(n)?,
+                force: zeros(rows)?,
+                seen: zeros(rows)?,
+            },
+            blocks: SumBlocks {
+                memory: zeros(rows)?,
+                inner: zeros(self.coefficients.len())?,
+                whole: zeros(n)?,
+                turned: zeros(rows)?,
+            },
         })
     }
 
     /// Whether a memory has the size that these sums need.
     pub fn fits(&self, work: &SumWork) -> bool {
-        work.inverse.len() == self.rows.terms() && work.seen.len() == self.rows.count()
+        work.inverse.len() == self.rows.terms() && work.vectors.seen.len() == self.rows.count()
     }
 
     /// Whether this harmonic is the fundamental, which the normalisation reads.
@@ -193,9 +207,9 @@ impl ModeSums {
         if let ([w], 1) = (w, self.coefficients.len()) {
             self.solve_single(work, [at, by_omega, by_damping], *w, relative);
             if self.is_fundamental() {
-                expand(&self.modes.vectors, &work.motion, x);
+                expand(&self.modes.vectors, &work.vectors.motion, x);
             } else {
-                x.copy_from_slice(&work.motion);
+                x.copy_from_slice(&work.vectors.motion);
             }
             return Ok(true);
         }
@@ -203,16 +217,16 @@ impl ModeSums {
         self.flexibility(work, interrupt)?;
         self.motion(work, w);
         if self.is_fundamental() {
-            self.expand(&work.motion, x, &mut work.whole);
+            self.expand(&work.vectors.motion, x, &mut work.blocks.whole);
         } else {
-            x.copy_from_slice(&work.motion);
+            x.copy_from_slice(&work.vectors.motion);
         }
         let coordinates = self.rows.coordinates();
         for (variable, slope) in [by_omega, by_damping].into_iter().enumerate() {
             let to = &mut relative[(1 + variable) * coordinates..(2 + variable) * coordinates];
             self.differentiate(work, (variable, slope), to);
         }
-        relative[..coordinates].copy_from_slice(&work.seen[..coordinates]);
+        relative[..coordinates].copy_from_slice(&work.vectors.seen[..coordinates]);
         Ok(true)
     }
 
@@ -229,28 +243,39 @@ impl ModeSums {
     /// Computes the products of the normalisation with the solution of [`Self::solve`], where `weighted` is B x.
     pub fn gauge(&self, work: &mut SumWork, weighted: &[Complex64], out: &mut GaugeProducts) {
         let (rows, coordinates) = (self.rows.count(), self.rows.coordinates());
-        multiply_adjoint(&self.modes.vectors, weighted, &mut work.whole, &mut work.of_modes);
-        for (rate, out) in work.rates.iter().zip(&mut out.of_rates) {
+        multiply_adjoint(
+            &self.modes.vectors,
+            weighted,
+            &mut work.blocks.whole,
+            &mut work.vectors.of_modes,
+        );
+        for (rate, out) in work.vectors.rates.iter().zip(&mut out.of_rates) {
             let left = self.rows.left().chunks_exact(rows);
             let moved: Complex64 = left.zip(rate).map(|(left, xi)| left[coordinates] * xi).sum();
-            *out = [inner(&work.of_modes, rate), moved];
+            *out = [inner(&work.vectors.of_modes, rate), moved];
         }
-        for (v, inverse) in work.of_modes.iter_mut().zip(&work.inverse) {
+        for (v, inverse) in work.vectors.of_modes.iter_mut().zip(&work.inverse) {
             *v *= inverse.conj();
         }
-        complex_columns::multiply(self.rows.left(), rows, &work.of_modes, &mut work.seen, &mut work.memory);
+        complex_columns::multiply(
+            self.rows.left(),
+            rows,
+            &work.vectors.of_modes,
+            &mut work.vectors.seen,
+            &mut work.blocks.memory,
+        );
         let order = self.coefficients.len();
         let row_of = |b: usize| self.coefficients.row_of(b);
         let columns = work.table.value.chunks_exact(coordinates + 1);
         for (c, (out, column)) in out.of_columns.iter_mut().zip(columns).enumerate() {
-            let mut size = work.seen[c].conj();
+            let mut size = work.vectors.seen[c].conj();
             if coordinates == 1 && order == 1 {
                 let force = self.coefficients.entry(0, work.at.frequency().at) * column[0];
-                size += work.seen[0].conj() * force;
+                size += work.vectors.seen[0].conj() * force;
             } else if self.coefficients.counts {
                 let force = &work.low_rank.force()[c * order..(c + 1) * order];
                 for (b, force) in force.iter().enumerate() {
-                    size += work.seen[row_of(b)].conj() * force;
+                    size += work.vectors.seen[row_of(b)].conj() * force;
                 }
             }
             *out = [size, column[coordinates]];
@@ -300,7 +325,7 @@ impl ModeSums {
         let pivot = (1.0 - sum * e).inv();
         work.table.value[0] = sum * pivot;
         relative[0] = -sum * pivot * w;
-        for (xi, (inverse, [q, _])) in work.motion.iter_mut().zip(work.inverse.iter().zip(sums)) {
+        for (xi, (inverse, [q, _])) in work.vectors.motion.iter_mut().zip(work.inverse.iter().zip(sums)) {
             *xi = -pivot * inverse * q.conj() * w;
         }
         let is_fundamental = self.is_fundamental();
@@ -311,7 +336,7 @@ impl ModeSums {
                 .sum();
             work.table.value[1] = moved * pivot;
         }
-        for ((slope, rate), to) in rates.into_iter().zip(&mut work.rates).zip(&mut relative[1..]) {
+        for ((slope, rate), to) in rates.into_iter().zip(&mut work.vectors.rates).zip(&mut relative[1..]) {
             let d_sum = slope.b * weighted - slope.a * squares;
             let d_e = self.coefficients.d_entry(0, Factors::of_stiffness(slope.a));
             *to = -pivot * pivot * (d_sum + sum * sum * d_e) * w;
@@ -351,26 +376,37 @@ impl ModeSums {
     /// Computes the modal motion ξ, and E ξ, the motions of the rows.
     fn motion(&self, work: &mut SumWork, w: &[Complex64]) {
         let (order, outputs) = (self.coefficients.len(), w.len() + 1);
-        work.force.fill(Complex64::ZERO);
-        work.force[..w.len()].copy_from_slice(w);
+        work.vectors.force.fill(Complex64::ZERO);
+        work.vectors.force[..w.len()].copy_from_slice(w);
         if self.coefficients.counts {
             for (force, w) in work.low_rank.force().chunks_exact(order.max(1)).zip(w) {
                 for (b, force) in force.iter().enumerate() {
-                    work.force[self.coefficients.row_of(b)] += force * w;
+                    work.vectors.force[self.coefficients.row_of(b)] += force * w;
                 }
             }
         }
-        multiply_adjoint(self.rows.left(), &work.force, &mut work.turned, &mut work.motion);
-        for (xi, inverse) in work.motion.iter_mut().zip(&work.inverse) {
+        multiply_adjoint(
+            self.rows.left(),
+            &work.vectors.force,
+            &mut work.blocks.turned,
+            &mut work.vectors.motion,
+        );
+        for (xi, inverse) in work.vectors.motion.iter_mut().zip(&work.inverse) {
             *xi *= -inverse;
         }
         let rows = self.rows.count();
-        complex_columns::multiply(self.rows.left(), rows, &work.motion, &mut work.seen, &mut work.memory);
+        complex_columns::multiply(
+            self.rows.left(),
+            rows,
+            &work.vectors.motion,
+            &mut work.vectors.seen,
+            &mut work.blocks.memory,
+        );
         // The relative motions are those of the flexibility in Newton's matrix, to the last digit.
         let columns = work.table.value.chunks_exact(outputs);
-        work.seen[..w.len()].fill(Complex64::ZERO);
+        work.vectors.seen[..w.len()].fill(Complex64::ZERO);
         for (column, w) in columns.zip(w) {
-            for (seen, g) in work.seen.iter_mut().zip(&column[..outputs - 1]) {
+            for (seen, g) in work.vectors.seen.iter_mut().zip(&column[..outputs - 1]) {
                 *seen -= g * w;
             }
         }
@@ -379,42 +415,53 @@ impl ModeSums {
     /// Computes ∂ξ by one variable, and its relative motions at the contacts.
     fn differentiate(&self, work: &mut SumWork, (variable, slope): (usize, Pair), relative: &mut [Complex64]) {
         let (rows, of) = (self.rows.count(), &self.coefficients);
-        work.force.fill(Complex64::ZERO);
+        work.vectors.force.fill(Complex64::ZERO);
         if of.counts {
             let factors = Factors {
                 c: slope.a,
                 i_nu: slope.i_nu,
             };
             for b in 0..of.len() {
-                work.force[of.row_of(b)] = of.d_entry(b, factors) * work.seen[of.row_of(b)];
+                work.vectors.force[of.row_of(b)] = of.d_entry(b, factors) * work.vectors.seen[of.row_of(b)];
             }
         }
-        let rate = &mut work.rates[variable];
-        multiply_adjoint(self.rows.left(), &work.force, &mut work.turned, rate);
-        let values = work.motion.iter().zip(&self.modes.values);
+        let rate = &mut work.vectors.rates[variable];
+        multiply_adjoint(self.rows.left(), &work.vectors.force, &mut work.blocks.turned, rate);
+        let values = work.vectors.motion.iter().zip(&self.modes.values);
         for ((rate, inverse), (xi, mu)) in rate.iter_mut().zip(&work.inverse).zip(values) {
             *rate = (*rate - (slope.a - slope.b * mu) * xi) * inverse;
         }
-        complex_columns::multiply(self.rows.left(), rows, rate, &mut work.force, &mut work.memory);
+        complex_columns::multiply(
+            self.rows.left(),
+            rows,
+            rate,
+            &mut work.vectors.force,
+            &mut work.blocks.memory,
+        );
         if of.counts {
-            for (b, z) in work.inner.iter_mut().enumerate() {
-                *z = work.force[of.row_of(b)];
+            for (b, z) in work.blocks.inner.iter_mut().enumerate() {
+                *z = work.vectors.force[of.row_of(b)];
             }
-            work.low_rank.solve_rows(&mut work.inner);
-            relative.copy_from_slice(&work.inner[..relative.len()]);
+            work.low_rank.solve_rows(&mut work.blocks.inner);
+            relative.copy_from_slice(&work.blocks.inner[..relative.len()]);
             if !self.is_fundamental() {
                 return;
             }
-            work.memory.fill(Complex64::ZERO);
-            for (b, z) in work.inner.iter().enumerate() {
-                work.memory[of.row_of(b)] = of.entry(b, work.at.frequency().at) * z;
+            work.blocks.memory.fill(Complex64::ZERO);
+            for (b, z) in work.blocks.inner.iter().enumerate() {
+                work.blocks.memory[of.row_of(b)] = of.entry(b, work.at.frequency().at) * z;
             }
-            multiply_adjoint(self.rows.left(), &work.memory, &mut work.turned, &mut work.of_modes);
-            for ((rate, inverse), force) in rate.iter_mut().zip(&work.inverse).zip(&work.of_modes) {
+            multiply_adjoint(
+                self.rows.left(),
+                &work.blocks.memory,
+                &mut work.blocks.turned,
+                &mut work.vectors.of_modes,
+            );
+            for ((rate, inverse), force) in rate.iter_mut().zip(&work.inverse).zip(&work.vectors.of_modes) {
                 *rate += inverse * force;
             }
         } else {
-            relative.copy_from_slice(&work.force[..relative.len()]);
+            relative.copy_from_slice(&work.vectors.force[..relative.len()]);
         }
     }
 }

@@ -75,7 +75,7 @@ pub(crate) fn poles(
 ) -> Result<core::result::Result<WavePoles, FlexibilityWay>> {
     const UNSUITABLE: FlexibilityWay = FlexibilityWay::Unsuitable;
     let block = &condensed.blocks()[i];
-    let is_forced = matches!(block.artificial, Artificial::None);
+    let is_forced = matches!(block.matrices.artificial, Artificial::None);
     if block.number == 0 || !is_forced {
         return Ok(Err(UNSUITABLE));
     }
@@ -87,11 +87,11 @@ pub(crate) fn poles(
     };
     let key = Key {
         matrices: (
-            Arc::clone(&block.reference),
-            Arc::clone(&block.mass),
-            Arc::clone(&block.damping),
+            Arc::clone(&block.matrices.reference),
+            Arc::clone(&block.matrices.mass),
+            Arc::clone(&block.matrices.damping),
         ),
-        tied: block.tied.as_ref().map(|_| block.number),
+        tied: block.matrices.tied.as_ref().map(|_| block.number),
     };
     Ok(wave.poles(key, interrupt)?.ok_or(UNSUITABLE))
 }
@@ -100,24 +100,24 @@ pub(crate) fn poles(
 pub(crate) fn are_of(poles: &WavePoles, block: &HarmonicBlock) -> bool {
     let (reference, mass, damping) = &poles.key.matrices;
     let is_same = |a: &Arc<Vec<Complex64>>, b: &Arc<Vec<Complex64>>| Arc::ptr_eq(a, b) || a == b;
-    let has_stiffness = Arc::ptr_eq(reference, &block.reference)
-        || (reference.col_ptr == block.reference.col_ptr
-            && reference.row_idx == block.reference.row_idx
-            && reference.values == block.reference.values);
-    poles.key.tied == block.tied.as_ref().map(|_| block.number)
+    let has_stiffness = Arc::ptr_eq(reference, &block.matrices.reference)
+        || (reference.col_ptr == block.matrices.reference.col_ptr
+            && reference.row_idx == block.matrices.reference.row_idx
+            && reference.values == block.matrices.reference.values);
+    poles.key.tied == block.matrices.tied.as_ref().map(|_| block.number)
         && has_stiffness
-        && is_same(mass, &block.mass)
-        && is_same(damping, &block.damping)
+        && is_same(mass, &block.matrices.mass)
+        && is_same(damping, &block.matrices.damping)
 }
 
 /// Work of computing the poles of a wave: order³, times a factor for complex matrices.
 fn work(condensed: &Condensed, block: &HarmonicBlock) -> f64 {
     let real = |values: &[Complex64]| values.iter().all(|z| z.im == 0.0);
-    let is_real = block.structural.is_none()
-        && block.tied.is_none()
-        && real(&block.stiffness)
-        && real(&block.damping)
-        && real(&block.mass);
+    let is_real = block.matrices.structural.is_none()
+        && block.matrices.tied.is_none()
+        && real(&block.matrices.stiffness)
+        && real(&block.matrices.damping)
+        && real(&block.matrices.mass);
     let order = 2.0 * condensed.ndof() as f64;
     order.powi(3) * if is_real { 1.0 } else { WORK_OF_COMPLEX }
 }
@@ -129,16 +129,16 @@ fn factors_are_quicker(condensed: &Condensed, block: &HarmonicBlock) -> Result<O
     if work > MOST_POLE_WORK {
         return Ok(Some(FlexibilityWay::Many));
     }
-    if is_dense(&block.reference)? {
+    if is_dense(&block.matrices.reference)? {
         return Ok(None);
     }
     // A wave serves all harmonics unless their speeds differ.
-    let harmonics = if block.tied.is_none() {
+    let harmonics = if block.matrices.tied.is_none() {
         condensed.blocks().len()
     } else {
         1
     };
-    let entries = entries_by_degrees(&block.reference)? as f64;
+    let entries = entries_by_degrees(&block.matrices.reference)? as f64;
     let of_factors = QUADRATIC_POLES_POINTS * harmonics as f64 * OPERATIONS_OF_ENTRY * entries;
     Ok((OPERATIONS_OF_POLES * work > of_factors).then_some(FlexibilityWay::Sparse))
 }
@@ -157,9 +157,9 @@ struct Undamped {
 impl Undamped {
     fn new(condensed: &Condensed, i: usize, interrupt: &Interrupt<'_>) -> Result<Option<Self>> {
         let (n, block) = (condensed.ndof(), &condensed.blocks()[i]);
-        let pattern = &block.reference;
+        let pattern = &block.matrices.reference;
         let mut stiffness = condensed.stiffness_with_real_kappa(i)?;
-        let structural = block.structural.iter().flat_map(|values| values.iter());
+        let structural = block.matrices.structural.iter().flat_map(|values| values.iter());
         for (v, d) in stiffness.values.iter_mut().zip(structural) {
             *v += Complex64::I * d;
         }
@@ -194,7 +194,7 @@ impl Undamped {
                 *z *= scale;
             }
         }
-        let damping = dense(pattern, &block.damping)?;
+        let damping = dense(pattern, &block.matrices.damping)?;
         let heavy = &shapes[massless * n..];
         for matrix in [&damping, &rest] {
             // A motion without mass that is damped would have a pole of first order.
@@ -378,8 +378,8 @@ fn is_damped(matrix: &DMatrix<Complex64>, motions: &[Complex64]) -> bool {
 
 /// Values of M plus the matrices of a tied speed that grow with ω².
 fn inertia(block: &HarmonicBlock) -> Result<Vec<Complex64>> {
-    let mut mass = try_copy(&block.mass, CONTEXT)?;
-    if let Some(tied) = &block.tied {
+    let mut mass = try_copy(&block.matrices.mass, CONTEXT)?;
+    if let Some(tied) = &block.matrices.tied {
         let h = block.number as f64;
         for ((m, k), g) in mass.iter_mut().zip(&tied.stiffness).zip(&tied.gyroscopic) {
             *m -= k / (h * h) + Complex64::I * g / h;

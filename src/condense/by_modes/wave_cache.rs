@@ -135,7 +135,7 @@ impl WaveCache {
         }
         if condensed.ndof() < POLES_FROM {
             self.without_poles = Some(FlexibilityWay::Few);
-        } else if !matches!(block.artificial, Artificial::None) {
+        } else if !matches!(block.matrices.artificial, Artificial::None) {
             // Poles would follow the damping ratio of a nonlinear mode; directions of damping do not.
             if let Some(modes) = self.beside_dampers((model, condensed, i), interrupt)? {
                 return Ok(Ok(Source::Modes(modes)));
@@ -197,7 +197,7 @@ impl WaveCache {
     ) -> Result<Option<Arc<WaveModes>>> {
         let block = &condensed.blocks()[i];
         let is_same = |known: &&KnownBlock| {
-            Arc::ptr_eq(&known.reference, &block.reference) && Arc::ptr_eq(&known.mass, &block.mass)
+            Arc::ptr_eq(&known.reference, &block.matrices.reference) && Arc::ptr_eq(&known.mass, &block.matrices.mass)
         };
         if let Some(known) = self.blocks.iter().find(is_same) {
             return Ok(Some(Arc::clone(&known.modes)));
@@ -205,8 +205,8 @@ impl WaveCache {
         let found = self.find_by_values((model, condensed, i), dampers, interrupt)?;
         if let Some(modes) = &found {
             let known = KnownBlock {
-                reference: Arc::clone(&block.reference),
-                mass: Arc::clone(&block.mass),
+                reference: Arc::clone(&block.matrices.reference),
+                mass: Arc::clone(&block.matrices.mass),
                 modes: Arc::clone(modes),
             };
             try_push(&mut self.blocks, known, CONTEXT)?;
@@ -225,14 +225,14 @@ impl WaveCache {
         let Some((reference, loss_factor)) = elastic_reference(model, condensed, i)? else {
             return Ok(None);
         };
-        let is_known = |known: &&Arc<WaveModes>| known.is_of(&reference, &block.mass, block.next);
+        let is_known = |known: &&Arc<WaveModes>| known.is_of(&reference, &block.matrices.mass, block.next);
         if let Some(known) = self.waves.iter().find(is_known) {
             return Ok(Some(Arc::clone(known)));
         }
         let other = self
             .waves
             .iter()
-            .find(|known| known.is_conjugate_of(&reference, &block.mass));
+            .find(|known| known.is_conjugate_of(&reference, &block.matrices.mass));
         let at = (i, reference, loss_factor, dampers);
         let Some(found) = modes_of(model, condensed, at, other, interrupt)? else {
             return Ok(None);
@@ -342,21 +342,26 @@ fn modes_of(
     let with_springs;
     let is_lossy = model.structure().has_complex_stiffness();
     let own = if springs.is_empty() && block.view.is_none() && !is_lossy {
-        &block.stiffness
+        &block.matrices.stiffness
     } else {
         with_springs = block.own_stiffness(model)?;
         &with_springs
     };
-    let matrices = [&block.mass[..], own, &block.damping];
+    let matrices = [&block.matrices.mass[..], own, &block.matrices.damping];
     let (proportional, dampers) = match proportional(matrices) {
         Some(found) => (found, Vec::new()),
-        None if few => match few_directions(&block.reference, matrices, model.structure().rayleigh, interrupt)? {
+        None if few => match few_directions(
+            &block.matrices.reference,
+            matrices,
+            model.structure().rayleigh,
+            interrupt,
+        )? {
             Some(few) if few.middle.is_none() => (few.proportional, few.directions),
             _ => return Ok(None),
         },
         None => return Ok(None),
     };
-    let mass = try_copy(&block.mass, CONTEXT)?;
+    let mass = try_copy(&block.matrices.mass, CONTEXT)?;
     let (values, vectors) = if let Some(other) = other {
         let mut vectors = try_copy(&other.vectors, CONTEXT)?;
         for z in &mut vectors {

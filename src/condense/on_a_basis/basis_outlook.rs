@@ -87,7 +87,7 @@ pub(crate) fn are_all_modes_quicker(pattern: &Csc, harmonics: usize) -> Result<b
 pub(crate) fn is_tuned_quicker(plan: &TunedPlan, blocks: &[HarmonicBlock]) -> Result<bool> {
     let Some(first) = blocks.first() else { return Ok(false) };
     let (sectors, n) = (plan.basis.sectors, plan.basis.order);
-    let outputs = first.rows.len() + 1;
+    let outputs = first.motions.rows.len() + 1;
     let of_wave = entries_by_degrees(&plan.ring(0).wave()?)?;
     let columns = (sectors * (outputs.div_ceil(sectors) + plan.basis.rank)) as f64;
     let (terms, outputs) = ((sectors * plan.basis.rank) as f64, outputs as f64);
@@ -97,8 +97,8 @@ pub(crate) fn is_tuned_quicker(plan: &TunedPlan, blocks: &[HarmonicBlock]) -> Re
         + outputs * terms * (outputs + terms);
     let of_plain = |entries: usize| of_factors(entries, sectors * n) + 2.0 * entries as f64 * outputs;
     // The factors have the entries of the matrix at least, which are counted quickly.
-    if of_tuned <= of_plain(first.reference.values.len() / 2) {
+    if of_tuned <= of_plain(first.matrices.reference.values.len() / 2) {
         return Ok(true);
     }
-    Ok(of_tuned <= of_plain(entries_by_degrees(&first.reference)?))
+    Ok(of_tuned <= of_plain(entries_by_degrees(&first.matrices.reference)?))
 }

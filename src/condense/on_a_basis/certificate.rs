@@ -75,7 +75,7 @@ pub(crate) fn certificate(
     interrupt: &Interrupt<'_>,
 ) -> Result<Certificate> {
     let order = view.pencil().order();
-    let n = block.reference.rows;
+    let n = block.matrices.reference.rows;
     if order == 0 {
         return Ok(Certificate::UNKNOWN);
     }
@@ -102,7 +102,8 @@ pub(crate) fn certificate(
         let i_nu = Complex64::new(0.0, nu);
         let matrix = lu.matrix();
         for (at, z) in matrix.iter_mut().enumerate() {
-            *z = block.reference.values[at] + i_nu * block.damping[at] - nu * nu * block.mass[at];
+            *z = block.matrices.reference.values[at] + i_nu * block.matrices.damping[at]
+                - nu * nu * block.matrices.mass[at];
         }
         match lu.factor(interrupt) {
             Ok(()) => {}
@@ -252,20 +253,21 @@ fn resonances(
     frequencies: &mut Vec<f64>,
     interrupt: &Interrupt<'_>,
 ) -> Result<()> {
-    let n = block.reference.rows;
+    let n = block.matrices.reference.rows;
     let shift = view.pencil().shift;
     // L Lᴴ = (K_κ + K_κᴴ)/2 + σM, and L⁻¹ M L⁻ᴴ has the eigenvalues 1/(λ + σ).
-    let values = &block.reference.values;
+    let values = &block.matrices.reference.values;
     let mut l = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
     for j in 0..n {
         for i in 0..n {
-            l[j * n + i] = 0.5 * (values[j * n + i] + values[i * n + j].conj()) + shift * block.mass[j * n + i];
+            l[j * n + i] =
+                0.5 * (values[j * n + i] + values[i * n + j].conj()) + shift * block.matrices.mass[j * n + i];
         }
     }
     if !hermitian::cholesky(&mut l, n, interrupt)? {
         return Ok(());
     }
-    let mut a = try_copy(&block.mass, CONTEXT)?;
+    let mut a = try_copy(&block.matrices.mass, CONTEXT)?;
     hermitian::solve_triangular(&l, n, false, &mut a, interrupt)?;
     hermitian::adjoint_in_place(&mut a, n);
     hermitian::solve_triangular(&l, n, false, &mut a, interrupt)?;

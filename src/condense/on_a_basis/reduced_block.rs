@@ -3,7 +3,7 @@
 use crate::condense::HarmonicBlock;
 use crate::condense::blocks::contact_classes::ContactClasses;
 use crate::condense::blocks::flexibility_way::FlexibilityWay;
-use crate::condense::blocks::harmonic_block::Artificial;
+use crate::condense::blocks::harmonic_block::{Artificial, BlockLoad, BlockMatrices, BlockMotions};
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
@@ -87,21 +87,27 @@ pub(crate) fn reduced_block(
     Ok(HarmonicBlock {
         number,
         next: structure.phase(number, 1),
-        reference: Arc::new(full),
-        stiffness: Arc::new(stiffness),
-        structural,
-        damping: Arc::new(damping),
-        mass: Arc::new(mass),
-        artificial: Artificial::None,
+        matrices: BlockMatrices {
+            reference: Arc::new(full),
+            stiffness: Arc::new(stiffness),
+            structural,
+            damping: Arc::new(damping),
+            mass: Arc::new(mass),
+            artificial: Artificial::None,
+            tied: None,
+        },
         source: None,
         without_source: FlexibilityWay::SingleFrequency,
-        force: try_vec(n, Complex64::ZERO, "the forces")?,
-        unbalance: None,
-        tied: None,
-        rows,
-        structural_rows,
-        linear_rows: rows_of(&contact_classes.linear)?.1,
-        springs,
+        load: BlockLoad {
+            force: try_vec(n, Complex64::ZERO, "the forces")?,
+            unbalance: None,
+        },
+        motions: BlockMotions {
+            rows,
+            structural_rows,
+            linear_rows: rows_of(&contact_classes.linear)?.1,
+            springs,
+        },
         view: Some(view),
     })
 }

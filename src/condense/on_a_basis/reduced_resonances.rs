@@ -26,17 +26,17 @@ pub fn reduced_resonances(
 ) -> Result<Option<Vec<Resonance>>> {
     let mut found = Vec::new();
     for block in condensed.blocks() {
-        let excited = block.force.iter().any(|f| *f != Complex64::ZERO);
+        let excited = block.load.force.iter().any(|f| *f != Complex64::ZERO);
         let Some(view) = block.view.as_ref().filter(|_| block.number > 0 && excited) else {
             continue;
         };
-        let n = block.reference.rows;
+        let n = block.matrices.reference.rows;
         let on_pattern = |values: Vec<Complex64>| -> Result<Csc> {
             Ok(Csc {
                 rows: n,
                 cols: n,
-                col_ptr: try_copy(&block.reference.col_ptr, CONTEXT)?,
-                row_idx: try_copy(&block.reference.row_idx, CONTEXT)?,
+                col_ptr: try_copy(&block.matrices.reference.col_ptr, CONTEXT)?,
+                row_idx: try_copy(&block.matrices.reference.row_idx, CONTEXT)?,
                 values,
             })
         };
@@ -50,14 +50,14 @@ pub fn reduced_resonances(
                 }
             }
         }
-        if let Some(structural) = &block.structural {
+        if let Some(structural) = &block.matrices.structural {
             for (k, d) in stiffness.iter_mut().zip(structural.iter()) {
                 *k += Complex64::I * d;
             }
         }
         let stiffness = on_pattern(stiffness)?;
-        let mass = on_pattern(try_copy(&block.mass, CONTEXT)?)?;
-        let damping = || on_pattern(try_copy(&block.damping, CONTEXT)?);
+        let mass = on_pattern(try_copy(&block.matrices.mass, CONTEXT)?)?;
+        let damping = || on_pattern(try_copy(&block.matrices.damping, CONTEXT)?);
         let own = if model.structure().has_gyroscopic_modes(block.number)? {
             let problem = Quadratic {
                 mass: &mass,

@@ -62,7 +62,7 @@ impl TunedPlan {
     /// `OutOfMemory`; `StoppedByCaller`.
     pub fn new(blocks: &[HarmonicBlock], sectors: usize, interrupt: &Interrupt<'_>) -> Result<Option<Self>> {
         let Some(first) = blocks.first() else { return Ok(None) };
-        let all = first.reference.rows;
+        let all = first.matrices.reference.rows;
         if sectors < 2 || !all.is_multiple_of(sectors) || blocks.iter().any(|block| block.view.is_some()) {
             return Ok(None);
         }
@@ -70,11 +70,11 @@ impl TunedPlan {
         let mut matrices: Vec<(usize, &[Complex64])> = Vec::new();
         let mut of_blocks = Vec::new();
         for block in blocks {
-            interrupt.check_before(block.reference.values.len() as u64)?;
-            let known = rings.iter().position(|ring| ring.is_of(&block.reference));
+            interrupt.check_before(block.matrices.reference.values.len() as u64)?;
+            let known = rings.iter().position(|ring| ring.is_of(&block.matrices.reference));
             let ring = known.unwrap_or(rings.len());
             if known.is_none() {
-                let Some(new) = TunedRing::new(&block.reference, sectors)? else {
+                let Some(new) = TunedRing::new(&block.matrices.reference, sectors)? else {
                     return Ok(None);
                 };
                 try_push(&mut rings, new, CONTEXT)?;
@@ -188,16 +188,16 @@ fn scale_of(rings: &[TunedRing], matrices: &[(usize, &[Complex64])], order: usiz
 /// Values of the matrices whose sum is the dynamic stiffness of a block, in the order of the factors of
 /// [`TunedPlan::differences`].
 fn values_of(block: &HarmonicBlock) -> [Option<&[Complex64]>; TUNED_TERMS] {
-    let own = match &block.artificial {
+    let own = match &block.matrices.artificial {
         Artificial::Stiffness(own) => Some(&own[..]),
         Artificial::None | Artificial::Mass => None,
     };
     [
-        Some(&block.reference.values[..]),
-        Some(&block.damping[..]),
-        Some(&block.mass[..]),
-        block.tied.as_ref().map(|tied| &tied.stiffness[..]),
-        block.tied.as_ref().map(|tied| &tied.gyroscopic[..]),
+        Some(&block.matrices.reference.values[..]),
+        Some(&block.matrices.damping[..]),
+        Some(&block.matrices.mass[..]),
+        block.matrices.tied.as_ref().map(|tied| &tied.stiffness[..]),
+        block.matrices.tied.as_ref().map(|tied| &tied.gyroscopic[..]),
         own,
     ]
 }

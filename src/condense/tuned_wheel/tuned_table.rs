@@ -43,23 +43,23 @@ impl<'a> Outputs<'a> {
         force: &'a [Complex64],
         response: &'a MotionRow,
     ) -> Option<Self> {
-        let all = block.rows.len();
+        let all = block.motions.rows.len();
         if !all.is_multiple_of(sectors) {
             return None;
         }
         let k = all / sectors;
         let is_turned = |c: usize, row: &MotionRow| {
             let shift = c / k * order;
-            let first = block.rows[c % k].terms();
+            let first = block.motions.rows[c % k].terms();
             let terms = row.terms();
             terms.len() == first.len()
                 && terms
                     .zip(first)
                     .all(|(a, b)| a.0 == (b.0 + shift) % (sectors * order) && a.1 == b.1)
         };
-        let are_alike = block.rows.iter().enumerate().all(|(c, row)| is_turned(c, row));
+        let are_alike = block.motions.rows.iter().enumerate().all(|(c, row)| is_turned(c, row));
         are_alike.then_some(Self {
-            rows: &block.rows[..k],
+            rows: &block.motions.rows[..k],
             force,
             response,
         })

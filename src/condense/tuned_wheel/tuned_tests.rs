@@ -51,7 +51,7 @@ fn condensed(model: &Model) -> (Condensed, Condensed) {
     let plan = TunedPlan::new(&tuned.blocks, SECTORS, &none)
         .unwrap()
         .expect("low rank");
-    tuned.tuned = Some(Arc::new(plan));
+    tuned.wave.tuned = Some(Arc::new(plan));
     (plain, tuned)
 }
 

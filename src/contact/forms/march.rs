@@ -14,6 +14,21 @@ pub struct March {
     pub f: Vec<f64>,
     /// States, samples × s.
     pub z: Vec<f64>,
+    /// Derivatives of the states at the end of a step.
+    pub by: StateDerivatives,
+    /// ∂fⱼ/∂zⱼ, d × s per sample.
+    pub df_dz: Vec<f64>,
+    /// ∂fⱼ/∂uⱼ at given zⱼ, d × d per sample.
+    pub df_du: Vec<f64>,
+    /// ∂fⱼ/∂vⱼ at given zⱼ, d × d per sample.
+    pub df_dv: Vec<f64>,
+    /// Memory for the law's own use, 2·d per sample.
+    pub scratch: Vec<f64>,
+}
+
+/// Derivatives of the states at the end of a step.
+#[derive(Clone, Debug)]
+pub struct StateDerivatives {
     /// ∂zⱼ/∂zⱼ₋₁, s × s per sample.
     pub dz_dz: Vec<f64>,
     /// ∂zⱼ/∂uⱼ₋₁, s × d per sample.
@@ -27,14 +42,6 @@ pub struct March {
     /// ∂zⱼ/∂ω at given motion, velocity and zⱼ₋₁, s per sample: the time step of a law that integrates
     /// a rate is 2π/(ω·samples).
     pub dz_domega: Vec<f64>,
-    /// ∂fⱼ/∂zⱼ, d × s per sample.
-    pub df_dz: Vec<f64>,
-    /// ∂fⱼ/∂uⱼ at given zⱼ, d × d per sample.
-    pub df_du: Vec<f64>,
-    /// ∂fⱼ/∂vⱼ at given zⱼ, d × d per sample.
-    pub df_dv: Vec<f64>,
-    /// Memory for the law's own use, 2·d per sample.
-    pub scratch: Vec<f64>,
 }
 
 impl March {
@@ -50,12 +57,14 @@ impl March {
             states,
             f: memory(d)?,
             z: memory(s)?,
-            dz_dz: memory(s.saturating_mul(s))?,
-            dz_du_before: memory(s.saturating_mul(d))?,
-            dz_du: memory(s.saturating_mul(d))?,
-            dz_dv_before: memory(s.saturating_mul(d))?,
-            dz_dv: memory(s.saturating_mul(d))?,
-            dz_domega: memory(s)?,
+            by: StateDerivatives {
+                dz_dz: memory(s.saturating_mul(s))?,
+                dz_du_before: memory(s.saturating_mul(d))?,
+                dz_du: memory(s.saturating_mul(d))?,
+                dz_dv_before: memory(s.saturating_mul(d))?,
+                dz_dv: memory(s.saturating_mul(d))?,
+                dz_domega: memory(s)?,
+            },
             df_dz: memory(d.saturating_mul(s))?,
             df_du: memory(d.saturating_mul(d))?,
             df_dv: memory(d.saturating_mul(d))?,
@@ -69,12 +78,12 @@ impl March {
         for (values, size) in [
             (&mut self.f, d),
             (&mut self.z, s),
-            (&mut self.dz_dz, s * s),
-            (&mut self.dz_du_before, s * d),
-            (&mut self.dz_du, s * d),
-            (&mut self.dz_dv_before, s * d),
-            (&mut self.dz_dv, s * d),
-            (&mut self.dz_domega, s),
+            (&mut self.by.dz_dz, s * s),
+            (&mut self.by.dz_du_before, s * d),
+            (&mut self.by.dz_du, s * d),
+            (&mut self.by.dz_dv_before, s * d),
+            (&mut self.by.dz_dv, s * d),
+            (&mut self.by.dz_domega, s),
             (&mut self.df_dz, d * s),
             (&mut self.df_du, d * d),
             (&mut self.df_dv, d * d),

@@ -26,7 +26,7 @@ impl ContactForces<'_> {
     #[must_use]
     #[inline]
     pub fn is_eliminated(&self, coordinate: usize) -> bool {
-        self.linear[coordinate] && self.condensed.may_be_eliminated(coordinate)
+        self.told.linear[coordinate] && self.condensed.may_be_eliminated(coordinate)
     }
 
     /// Whether some law is sampled, so that the forces have a kink wherever an event passes a sample.
@@ -40,7 +40,7 @@ impl ContactForces<'_> {
     #[must_use]
     #[inline]
     pub fn is_inactive(&self, coordinate: usize) -> bool {
-        self.inactive[coordinate] && self.condensed.may_be_eliminated(coordinate)
+        self.told.inactive[coordinate] && self.condensed.may_be_eliminated(coordinate)
     }
 
     /// Marks per unknown motion whether some force that is not eliminated depends on it.
@@ -48,7 +48,7 @@ impl ContactForces<'_> {
         let m = self.condensed.set().packed_len();
         active.fill(false);
         for c in (0..self.condensed.coordinates()).filter(|&c| !self.is_eliminated(c)) {
-            for (by, _) in self.jacobians.of_force(c) {
+            for (by, _) in self.result.jacobians.of_force(c) {
                 active[by * m..(by + 1) * m].fill(true);
             }
         }
@@ -57,7 +57,8 @@ impl ContactForces<'_> {
     /// Whether some force that is not eliminated depends on the motion of a coordinate.
     #[must_use]
     pub fn is_coupled(&self, coordinate: usize) -> bool {
-        self.jacobians
+        self.result
+            .jacobians
             .of_motion(coordinate)
             .any(|(force, _)| !self.is_eliminated(force))
     }
@@ -70,7 +71,7 @@ impl ContactForces<'_> {
         let du = &direction[coordinate * m..(coordinate + 1) * m];
         let mut dw = -self.condensed.kappa(coordinate, i) * set.get(du, i);
         let (at, has_pair) = (set.offset(i), set.numbers()[i] != 0);
-        for (by, block) in self.jacobians.of_force(coordinate) {
+        for (by, block) in self.result.jacobians.of_force(coordinate) {
             for (column, d) in block.chunks_exact(m).zip(&direction[by * m..]) {
                 match column[at..] {
                     [re, im, ..] if has_pair => dw += Complex64::new(re, im) * d,
@@ -88,7 +89,7 @@ impl ContactForces<'_> {
         let set = self.condensed.set();
         let m = set.packed_len();
         dw.fill(0.0);
-        for (by, block) in self.jacobians.of_force(coordinate) {
+        for (by, block) in self.result.jacobians.of_force(coordinate) {
             add_product(1.0, block, &direction[by * m..(by + 1) * m], dw);
         }
         let own = &direction[coordinate * m..(coordinate + 1) * m];
@@ -102,11 +103,11 @@ impl ContactForces<'_> {
     pub fn behind(&self, (change, along): (&[f64], f64), coordinate: usize, force: &mut [f64]) {
         let m = force.len();
         let here = coordinate * m..(coordinate + 1) * m;
-        let numbers = self.force[here.clone()].iter().zip(&self.by_omega[here]);
+        let numbers = self.result.force[here.clone()].iter().zip(&self.result.by_omega[here]);
         for (to, (force, by_omega)) in force.iter_mut().zip(numbers) {
             *to = force + by_omega * along;
         }
-        for (by, block) in self.jacobians.of_force(coordinate) {
+        for (by, block) in self.result.jacobians.of_force(coordinate) {
             add_product(1.0, block, &change[by * m..(by + 1) * m], force);
         }
     }
@@ -114,7 +115,7 @@ impl ContactForces<'_> {
     /// The blocks ∂f/∂y of the force of a coordinate, each with the coordinate of the motion by which it is the
     /// derivative.
     pub fn blocks_of_force(&self, coordinate: usize) -> impl Iterator<Item = (usize, &[f64])> {
-        self.jacobians.of_force(coordinate)
+        self.result.jacobians.of_force(coordinate)
     }
 
     /// Term that is added to the diagonal of a mean in Newton's matrix.
@@ -132,7 +133,7 @@ impl ContactForces<'_> {
     /// # Errors
     /// `OutOfMemory`.
     pub fn copy_jacobians(&self, values: &mut Vec<f64>) -> Result<()> {
-        self.jacobians.copy(values)
+        self.result.jacobians.copy(values)
     }
 
     /// Copies for each motion whether its force is eliminated at the motion evaluated last.
@@ -149,7 +150,7 @@ impl ContactForces<'_> {
 
     /// Exchanges the Jacobians of all laws for those of another motion.
     pub fn swap_jacobians(&mut self, values: &mut Vec<f64>) {
-        self.jacobians.swap(values);
+        self.result.jacobians.swap(values);
     }
 
     /// Adds G (∂f/∂y − κ) in a range of carried harmonics to the column of a Jacobian that belongs to number `q` of
@@ -169,7 +170,7 @@ impl ContactForces<'_> {
         let set = self.condensed.set();
         let m = set.packed_len();
         let counts = |(force, _): &(usize, &[f64])| !self.is_eliminated(*force);
-        let forces = || self.jacobians.of_motion(motion).filter(counts);
+        let forces = || self.result.jacobians.of_motion(motion).filter(counts);
         let mut several = forces().skip(1);
         let only = if several.next().is_none() {
             forces().next()
@@ -240,7 +241,7 @@ impl ContactForces<'_> {
         let (m, harmonics) = (set.packed_len(), set.numbers().len());
         let mean = usize::from(set.has_mean());
         let counts = |(force, _): &(usize, &[f64])| !self.is_eliminated(*force);
-        for (force, block) in self.jacobians.of_motion(motion).filter(counts) {
+        for (force, block) in self.result.jacobians.of_motion(motion).filter(counts) {
             let first = force * self.condensed.coordinates() * harmonics;
             let rows = &flexibility[first..first + self.condensed.coordinates() * harmonics];
             if force == motion && mean == 1 {
@@ -281,7 +282,7 @@ impl ContactForces<'_> {
         let set = self.condensed.set();
         let (m, at) = (set.packed_len(), set.offset(i));
         let counts = |(force, _): &(usize, &[f64])| !self.is_eliminated(*force);
-        for (force, block) in self.jacobians.of_motion(motion).filter(counts) {
+        for (force, block) in self.result.jacobians.of_motion(motion).filter(counts) {
             let (by_re, by_im) = (&block[at * m + at..], &block[(at + 1) * m + at..]);
             let mut change = 0.5 * Complex64::new(by_re[0] + by_im[1], by_re[1] - by_im[0]);
             if force == motion {
@@ -298,7 +299,7 @@ impl ContactForces<'_> {
     pub fn couple_scalar(&self, i: usize, (row, force): (usize, usize), g: Complex64, jacobian: &mut [f64], n: usize) {
         let set = self.condensed.set();
         let m = set.packed_len();
-        for (by, block) in self.jacobians.of_force(force) {
+        for (by, block) in self.result.jacobians.of_force(force) {
             for (q, column) in block.chunks_exact(m).enumerate() {
                 jacobian[(by * m + q) * n + row] += (g * set.get(column, i)).re;
             }

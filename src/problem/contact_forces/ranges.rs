@@ -33,10 +33,10 @@ impl ContactForces<'_> {
                 continue;
             }
             self.interrupt.check()?;
-            let Some(found) = self.found.get_mut(at.len() - 1).and_then(Option::as_mut) else {
+            let Some(found) = self.memory.found.get_mut(at.len() - 1).and_then(Option::as_mut) else {
                 continue;
             };
-            let y = gather_scaled(at, (m, here.of_motion), motion, &mut self.gathered);
+            let y = gather_scaled(at, (m, here.of_motion), motion, &mut self.memory.gathered);
             if at.len() == 1 {
                 self.evaluator.prepare(set, y, self.interrupt)?;
                 other.prepare(set, y, self.interrupt)?;
@@ -45,7 +45,7 @@ impl ContactForces<'_> {
             let interrupt = self.interrupt;
             let evaluated = self.evaluator.evaluate(law, set, y, omega, found, interrupt);
             evaluated.map_err(reported)?;
-            let checked = &mut self.checked[..found.force.len()];
+            let checked = &mut self.memory.checked[..found.force.len()];
             checked.copy_from_slice(&found.force);
             other.evaluate(law, set, y, omega, found, interrupt).map_err(reported)?;
             for (a, b) in checked.iter().zip(&found.force) {
@@ -69,7 +69,7 @@ impl ContactForces<'_> {
             rest.clear();
             own.clear();
             for &c in &assembled.coordinates {
-                try_push(&mut rest, self.rest.get(c).copied().unwrap_or(0.0), CONTEXT)?;
+                try_push(&mut rest, self.static_part.rest.get(c).copied().unwrap_or(0.0), CONTEXT)?;
                 try_push(&mut own, motion[c], CONTEXT)?;
             }
             onset = onset.earliest(assembled.law.onset(&rest, &own));

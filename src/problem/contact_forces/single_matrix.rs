@@ -23,7 +23,7 @@ impl ContactForces<'_> {
         if self.condensed.coordinates() != 1 || set.has_mean() {
             return Ok(false);
         }
-        let Some((_, jacobian)) = self.jacobians.of_motion(0).next() else {
+        let Some((_, jacobian)) = self.result.jacobians.of_motion(0).next() else {
             return Ok(false);
         };
         for (g, table) in memory.iter_mut().zip(tables) {

@@ -9,7 +9,7 @@ impl Epmc<'_> {
     /// Product L² B x̂₁ of the normalisation at the point last evaluated.
     #[must_use]
     pub fn weighted(&self) -> &[Complex64] {
-        &self.weighted
+        &self.memory.weighted
     }
 
     /// Factor of Im x̂₁ of the reference degree of freedom in the last row of the system.

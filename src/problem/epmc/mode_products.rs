@@ -79,10 +79,8 @@ impl MatrixFree for Epmc<'_> {
         let order = part * coordinates + BEHIND;
         let Self {
             forces,
-            tables,
+            derivatives,
             products,
-            by_omega,
-            by_damping,
             ..
         } = self;
         active.fill(true);
@@ -92,7 +90,7 @@ impl MatrixFree for Epmc<'_> {
             let (c, q) = (k / part, k % part);
             forces.interrupt().check()?;
             column.fill(0.0);
-            let flexibility = (|i: usize| &tables[i][..], coordinates);
+            let flexibility = (|i: usize| &derivatives.tables[i][..], coordinates);
             forces.couple(0..harmonics, (c, q), flexibility, &mut products.harmonic[1], column);
             for (to, from) in to.chunks_exact_mut(part).zip(column.chunks_exact(m)) {
                 to.copy_from_slice(&from[..part]);
@@ -102,7 +100,10 @@ impl MatrixFree for Epmc<'_> {
                 *to = row[c * m + q];
             }
         }
-        for (to, from) in others.chunks_exact_mut(order).zip([&*by_omega, &*by_damping]) {
+        for (to, from) in others
+            .chunks_exact_mut(order)
+            .zip([&derivatives.by_omega, &derivatives.by_damping])
+        {
             let (groups, behind) = from.split_at(from.len() - BEHIND);
             for (to, from) in to.chunks_exact_mut(part).zip(groups.chunks_exact(m)) {
                 to.copy_from_slice(&from[..part]);
@@ -122,7 +123,7 @@ impl MatrixFree for Epmc<'_> {
         for (motion, column) in matrix.chunks_exact_mut(coordinates.max(1)).enumerate() {
             column[motion] = Complex64::ONE;
             self.forces
-                .add_mean_coupling((motion, i), (&self.tables[i], coordinates), column);
+                .add_mean_coupling((motion, i), (&self.derivatives.tables[i], coordinates), column);
         }
     }
 
@@ -132,11 +133,11 @@ impl MatrixFree for Epmc<'_> {
         let kept = &mut self.products.kept;
         self.forces.copy_silent(&mut kept.silent)?;
         self.forces.copy_jacobians(&mut kept.jacobians)?;
-        for (to, from) in kept.tables.iter_mut().zip(&self.tables) {
+        for (to, from) in kept.tables.iter_mut().zip(&self.derivatives.tables) {
             to.copy_from_slice(from);
         }
-        kept.by_omega.copy_from_slice(&self.by_omega);
-        kept.by_damping.copy_from_slice(&self.by_damping);
+        kept.by_omega.copy_from_slice(&self.derivatives.by_omega);
+        kept.by_damping.copy_from_slice(&self.derivatives.by_damping);
         for (to, from) in kept.rows.iter_mut().zip(&self.products.rows) {
             to.copy_from_slice(from);
         }
@@ -160,7 +161,7 @@ impl Epmc<'_> {
         let zeros = |len| try_vec(len, 0.0, CONTEXT);
         let of_harmonic = || try_vec(coordinates, Complex64::ZERO, CONTEXT);
         let mut tables = Vec::new();
-        for table in &self.tables {
+        for table in &self.derivatives.tables {
             try_push(&mut tables, try_vec(table.len(), Complex64::ZERO, CONTEXT)?, CONTEXT)?;
         }
         *self.products = ModeProducts {
@@ -185,7 +186,7 @@ impl Epmc<'_> {
         let fundamental = self.condensed.set().fundamental();
         for (k, row) in self.products.rows.iter_mut().enumerate() {
             row.fill(0.0);
-            for (c, g) in self.gauge_rows.iter().enumerate() {
+            for (c, g) in self.derivatives.gauge_rows.iter().enumerate() {
                 self.forces.couple_scalar(fundamental, (0, c), g[k], row, 1);
             }
         }
@@ -195,9 +196,9 @@ impl Epmc<'_> {
     fn exchange(&mut self) {
         let kept = &mut self.products.kept;
         self.forces.swap_jacobians(&mut kept.jacobians);
-        swap(&mut self.tables, &mut kept.tables);
-        swap(&mut self.by_omega, &mut kept.by_omega);
-        swap(&mut self.by_damping, &mut kept.by_damping);
+        swap(&mut self.derivatives.tables, &mut kept.tables);
+        swap(&mut self.derivatives.by_omega, &mut kept.by_omega);
+        swap(&mut self.derivatives.by_damping, &mut kept.by_damping);
         swap(&mut self.products.rows, &mut kept.rows);
     }
 
@@ -226,7 +227,7 @@ impl Epmc<'_> {
         for (to, row) in out[n - BEHIND..].iter_mut().zip(rows) {
             *to = dot(row, motion);
         }
-        for (i, table) in self.tables.iter().enumerate() {
+        for (i, table) in self.derivatives.tables.iter().enumerate() {
             let (at, mean) = (set.offset(i), set.numbers()[i] == 0);
             for (z, dw) in z.iter_mut().zip(change.chunks_exact(m)) {
                 *z = set.get(dw, i);
@@ -239,7 +240,11 @@ impl Epmc<'_> {
                 }
             }
         }
-        for ((out, by_omega), by_damping) in out.iter_mut().zip(&self.by_omega).zip(&self.by_damping) {
+        for ((out, by_omega), by_damping) in out
+            .iter_mut()
+            .zip(&self.derivatives.by_omega)
+            .zip(&self.derivatives.by_damping)
+        {
             *out += by_omega * along_omega + by_damping * along_damping;
         }
     }

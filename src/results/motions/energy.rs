@@ -43,9 +43,9 @@ pub fn balance(condensed: &Condensed, omega: f64, x: &[Complex64], forces: &[f64
     let mut sum = Balance::default();
     for (block, x) in condensed.blocks().iter().zip(x.chunks_exact(condensed.ndof())) {
         let h = block.number as f64;
-        let pattern = &block.reference;
-        let stiffness = form(pattern, &block.stiffness, x);
-        let of_speed = match &block.tied {
+        let pattern = &block.matrices.reference;
+        let stiffness = form(pattern, &block.matrices.stiffness, x);
+        let of_speed = match &block.matrices.tied {
             Some(tied) => omega * omega * form(pattern, &tied.stiffness, x).re,
             None => 0.0,
         };
@@ -54,10 +54,10 @@ pub fn balance(condensed: &Condensed, omega: f64, x: &[Complex64], forces: &[f64
             continue;
         }
         let hw = h * omega;
-        sum.twice_mean_kinetic += 0.5 * hw * hw * form(pattern, &block.mass, x).re;
+        sum.twice_mean_kinetic += 0.5 * hw * hw * form(pattern, &block.matrices.mass, x).re;
         sum.potential_mean += 0.25 * (stiffness.re + of_speed);
-        sum.structural_loss += PI * h * (stiffness.im + hw * form(pattern, &block.damping, x).re);
-        if let Some(structural) = &block.structural {
+        sum.structural_loss += PI * h * (stiffness.im + hw * form(pattern, &block.matrices.damping, x).re);
+        if let Some(structural) = &block.matrices.structural {
             sum.structural_loss += PI * h * form(pattern, structural, x).re;
         }
     }
@@ -120,8 +120,12 @@ pub fn peaks(condensed: &Condensed, omega: f64, x: &[Complex64], interrupt: &Int
             sums.fill(ComplexSum::default());
             match condensed.structure() {
                 None => {
-                    let values = if kinetic { &block.mass } else { &block.stiffness };
-                    product(&block.reference, values, moved, &mut sums);
+                    let values = if kinetic {
+                        &block.matrices.mass
+                    } else {
+                        &block.matrices.stiffness
+                    };
+                    product(&block.matrices.reference, values, moved, &mut sums);
                 }
                 // Harmonics on different bases meet in the degrees of freedom alone.
                 Some(structure) => {
@@ -137,14 +141,14 @@ pub fn peaks(condensed: &Condensed, omega: f64, x: &[Complex64], interrupt: &Int
             for (conjugate, sum) in conjugate.iter_mut().zip(&sums) {
                 *conjugate = sum.total();
             }
-            if let (false, Some(tied)) = (kinetic, &block.tied) {
+            if let (false, Some(tied)) = (kinetic, &block.matrices.tied) {
                 sums.fill(ComplexSum::default());
-                product(&block.reference, &tied.stiffness, moved, &mut sums);
+                product(&block.matrices.reference, &tied.stiffness, moved, &mut sums);
                 for (conjugate, sum) in conjugate.iter_mut().zip(&sums) {
                     *conjugate += omega * omega * sum.total();
                 }
             }
-            for (force, motion, k) in block.springs.iter().filter(|_| !kinetic) {
+            for (force, motion, k) in block.motions.springs.iter().filter(|_| !kinetic) {
                 let pull = along(motion, moved) * k;
                 for &(p, a) in force.iter().flatten() {
                     conjugate[p] += a.conj() * pull;

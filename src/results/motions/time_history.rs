@@ -280,7 +280,7 @@ impl Branch {
         let contact_classes = condensed.contact_classes();
         if let Some(at) = contact_classes.linear(contact) {
             let kept = &contact_classes.contacts()[contact];
-            let row = |i: usize, k: usize| &condensed.blocks()[i].linear_rows[at + k];
+            let row = |i: usize, k: usize| &condensed.blocks()[i].motions.linear_rows[at + k];
             let (set, packed) = self.recover(point, kept.directions(), |i, k, x| Ok(row(i, k).along(x)), interrupt)?;
             let orbit = Orbit::spring(&set, &packed, kept.directions(), kept.stiffness_as_spring());
             return use_it(&orbit, 1.0);

@@ -37,8 +37,13 @@ pub struct KrylovSystem {
     are_own: bool,
     /// Whether det K M⁻¹ is positive, as the last solution showed.
     positive: bool,
-    column: Vec<f64>,
+    vectors: KrylovVectors,
     scales: (f64, f64),
+}
+
+/// Memory of products.
+pub struct KrylovVectors {
+    column: Vec<f64>,
     row: Vec<f64>,
     /// Right-hand side of the block, preconditioned vector, and scaled unknowns.
     reduced: Vec<f64>,
@@ -188,12 +193,14 @@ impl KrylovSystem {
             of_own_factors: 0.0,
             are_own: false,
             positive: true,
-            column: try_vec(n, 0.0, CONTEXT)?,
+            vectors: KrylovVectors {
+                column: try_vec(n, 0.0, CONTEXT)?,
+                row: try_vec(n + 1, 0.0, CONTEXT)?,
+                reduced: try_vec(order + 1, 0.0, CONTEXT)?,
+                product: try_vec(n + 1, 0.0, CONTEXT)?,
+                scaled: try_vec(n, 0.0, CONTEXT)?,
+            },
             scales: (1.0, 1.0),
-            row: try_vec(n + 1, 0.0, CONTEXT)?,
-            reduced: try_vec(order + 1, 0.0, CONTEXT)?,
-            product: try_vec(n + 1, 0.0, CONTEXT)?,
-            scaled: try_vec(n, 0.0, CONTEXT)?,
         })
     }
 
@@ -268,10 +275,13 @@ impl KrylovSystem {
         self.products = 0;
         self.positive = true;
         let is_direct = self.is_direct();
-        let (factors, reduced) = ((&mut self.block, &mut self.pairs, &mut self.wheel), &mut self.reduced);
+        let (factors, reduced) = (
+            (&mut self.block, &mut self.pairs, &mut self.wheel),
+            &mut self.vectors.reduced,
+        );
         if !is_direct {
-            let border = (&self.column[..], self.scales, &self.row[..]);
-            let (preconditioned, scaled) = (&mut self.product, &mut self.scaled);
+            let border = (&self.vectors.column[..], self.scales, &self.vectors.row[..]);
+            let (preconditioned, scaled) = (&mut self.vectors.product, &mut self.vectors.scaled);
             let solved = self.memory.solve(b, tolerance, most, |v, out| {
                 interrupt.check()?;
                 preconditioned.copy_from_slice(v);
@@ -298,12 +308,12 @@ impl KrylovSystem {
         } else {
             operator(jacobian)?.fill_block(lengths.part, matrix, active)?;
         }
-        let (groups, behind) = self.column.split_at(self.column.len() - lengths.behind);
+        let (groups, behind) = self.vectors.column.split_at(self.vectors.column.len() - lengths.behind);
         let groups = groups.chunks_exact(lengths.group.max(1));
         let column = groups.flat_map(|y| y[..lengths.part].iter().copied());
         let column = column.chain(behind.iter().copied());
         self.block
-            .set_border(column, self.scales, Self::of_block(&self.row, lengths));
+            .set_border(column, self.scales, Self::of_block(&self.vectors.row, lengths));
         Ok(())
     }
 
@@ -344,8 +354,8 @@ fn product(
 
 impl LinearSystem for KrylovSystem {
     fn update(&mut self, jacobian: &mut dyn Jacobian, border: Border<'_>, interrupt: &Interrupt<'_>) -> Result<()> {
-        self.column.copy_from_slice(border.column);
-        self.row.copy_from_slice(border.row);
+        self.vectors.column.copy_from_slice(border.column);
+        self.vectors.row.copy_from_slice(border.row);
         self.scales = border.scales;
         self.are_own = false;
         interrupt.check()?;
@@ -365,9 +375,9 @@ impl LinearSystem for KrylovSystem {
         self.are_own = true;
         if let Some(wheel) = &mut self.wheel {
             let border = Border {
-                column: &self.column,
+                column: &self.vectors.column,
                 scales: self.scales,
-                row: &self.row,
+                row: &self.vectors.row,
             };
             wheel.factor(operator(jacobian)?, interrupt)?;
             return wheel.set_border(operator(jacobian)?, border);
@@ -413,8 +423,8 @@ impl LinearSystem for KrylovSystem {
         if self.is_direct() {
             return self.block.apply(jacobian, x, out);
         }
-        let border = (&self.column[..], self.scales, &self.row[..]);
-        product(jacobian, border, &mut self.scaled, x, out)
+        let border = (&self.vectors.column[..], self.scales, &self.vectors.row[..]);
+        product(jacobian, border, &mut self.vectors.scaled, x, out)
     }
 
     fn limit_products(&mut self, most: usize) {
