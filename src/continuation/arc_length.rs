@@ -10,6 +10,7 @@ mod crossed_resonances;
 
 use crate::continuation::corrector::{Corrector, Outcome};
 use crate::continuation::history::History;
+use crate::continuation::linear_resonance::LinearResonance;
 use crate::continuation::metric::Metric;
 use crate::continuation::point::Point;
 use crate::continuation::settings::Settings;
@@ -19,8 +20,6 @@ use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::problem::Problem;
 use num_complex::Complex64;
-
-pub use crossed_resonances::LinearResonance;
 
 /// Outcome of an attempt to advance.
 #[derive(Debug)]

@@ -8,6 +8,7 @@ mod curvature_circle;
 mod hermite_peak;
 mod history;
 pub mod initial_point;
+mod linear_resonance;
 pub mod metric;
 pub mod newton_homotopy;
 pub mod point;
@@ -17,7 +18,8 @@ mod settings;
 pub mod special_points;
 pub mod step_control;
 
-pub use arc_length::{Advance, Continuation, LinearResonance};
+pub use arc_length::{Advance, Continuation};
+pub use linear_resonance::LinearResonance;
 pub use metric::Metric;
 pub use point::{Point, PointAt};
 pub use settings::Settings;

@@ -4,24 +4,14 @@
 //! and the peak between them is lost. The natural frequencies are known beforehand. At each of them the solution is compared with
 //! the cubic through the ends of the step; where it departs from the cubic, the branch feels the resonance, and the step is too long.
 
-use crate::continuation::Point;
 use crate::continuation::arc_length::{CORNER_STEP, Continuation, FLOOR};
+use crate::continuation::linear_resonance::LinearResonance;
+use crate::continuation::point::Point;
 use crate::continuation::special_points::Locator;
 use crate::error::Result;
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::problem::Problem;
-
-/// A resonance of the structure with linear forces.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LinearResonance {
-    /// Value of the parameter.
-    pub at: f64,
-    /// Half width of the peak; where there is no damping, the distance at which the resonance is passed.
-    pub half_width: f64,
-    /// Distance from the resonance to the place of the comparison: the response is unbounded at an undamped one.
-    pub aside: f64,
-}
 
 /// Half widths of a resonance that a step may have: its ends then show the peak.
 /// Kind: tuned; measured on: random chains with light coupling.
