@@ -100,7 +100,11 @@ pub struct Bordered {
     border: Vec<f64>,
     u_scale: f64,
     reduced: Vec<f64>,
-    /// Right-hand side, change and scaled unknowns of an iterative refinement.
+    refinement: Refinement,
+}
+
+/// Right-hand side, change and scaled unknowns of an iterative refinement.
+pub struct Refinement {
     known: Vec<f64>,
     change: Vec<f64>,
     scaled: Vec<f64>,
@@ -126,9 +130,11 @@ impl Bordered {
             border: try_vec(n, 0.0, CONTEXT)?,
             u_scale: 1.0,
             reduced: try_vec(n + 1, 0.0, CONTEXT)?,
-            known: try_vec(n + 1, 0.0, CONTEXT)?,
-            change: try_vec(n + 1, 0.0, CONTEXT)?,
-            scaled: try_vec(n, 0.0, CONTEXT)?,
+            refinement: Refinement {
+                known: try_vec(n + 1, 0.0, CONTEXT)?,
+                change: try_vec(n + 1, 0.0, CONTEXT)?,
+                scaled: try_vec(n, 0.0, CONTEXT)?,
+            },
         };
         bordered.rest.clear();
         Ok(bordered)

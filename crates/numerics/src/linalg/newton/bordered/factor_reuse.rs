@@ -27,8 +27,8 @@ impl Bordered {
         if !self.is_reusable(k) {
             return false;
         }
-        let mut known = core::mem::take(&mut self.known);
-        let mut change = core::mem::take(&mut self.change);
+        let mut known = core::mem::take(&mut self.refinement.known);
+        let mut change = core::mem::take(&mut self.refinement.change);
         known.copy_from_slice(x);
         self.solve(x);
         let mut last = norm(x);
@@ -55,8 +55,8 @@ impl Bordered {
         if !done {
             x.copy_from_slice(&known);
         }
-        self.known = known;
-        self.change = change;
+        self.refinement.known = known;
+        self.refinement.change = change;
         done
     }
 
@@ -71,7 +71,7 @@ impl Bordered {
     fn subtract_product(&mut self, k: &Parts<'_>, x: &[f64], b: &[f64], out: &mut [f64]) {
         let n = self.n;
         let (u_scale, p_scale) = k.scales;
-        for (s, x) in self.scaled.iter_mut().zip(x) {
+        for (s, x) in self.refinement.scaled.iter_mut().zip(x) {
             *s = u_scale * x;
         }
         let along = p_scale * x[n];
@@ -81,14 +81,14 @@ impl Bordered {
         out[n] = b[n] - dot(k.row, x);
         let out = &mut out[..n];
         if self.eliminated.is_empty() {
-            add_product(-1.0, k.jacobian, &self.scaled, out);
+            add_product(-1.0, k.jacobian, &self.refinement.scaled, out);
             return;
         }
         for &t in &self.eliminated {
-            out[t] -= self.scaled[t];
+            out[t] -= self.refinement.scaled[t];
         }
         for &j in &self.active {
-            let s = self.scaled[j];
+            let s = self.refinement.scaled[j];
             for (out, k) in out.iter_mut().zip(&k.jacobian[j * n..(j + 1) * n]) {
                 *out -= s * k;
             }
