@@ -187,8 +187,8 @@ impl Sensitivity {
         let (d, last) = (signals.directions, signals.samples - 1);
         for (a, row) in self.start.chunks_exact_mut(self.width).enumerate() {
             let block = a * d..(a + 1) * d;
-            signals.add(last, omega, &march.by.dz_du[block.clone()], &march.by.dz_dv[block], row);
-            row[self.width - 1] += march.by.dz_domega[a];
+            signals.add(last, omega, &march.dz.u[block.clone()], &march.dz.v[block], row);
+            row[self.width - 1] += march.dz.omega[a];
         }
     }
 
@@ -241,24 +241,21 @@ impl Sensitivity {
             for a in 0..s {
                 let to = &mut self.next[a * row..(a + 1) * row];
                 to.fill(0.0);
-                let steps = &march.by.dz_dz[(j * s + a) * s..(j * s + a + 1) * s];
+                let steps = &march.dz.z[(j * s + a) * s..(j * s + a + 1) * s];
                 for (factor, state) in steps.iter().zip(self.now.chunks_exact(row)) {
                     axpy(*factor, state, to);
                 }
                 let block = (j * s + a) * d..(j * s + a + 1) * d;
-                let from = (
-                    &march.by.dz_du_before[block.clone()],
-                    &march.by.dz_dv_before[block.clone()],
-                );
+                let from = (&march.dz.u_before[block.clone()], &march.dz.v_before[block.clone()]);
                 signals.add(before, omega, from.0, from.1, &mut to[..width]);
                 signals.add(
                     j,
                     omega,
-                    &march.by.dz_du[block.clone()],
-                    &march.by.dz_dv[block],
+                    &march.dz.u[block.clone()],
+                    &march.dz.v[block],
                     &mut to[..width],
                 );
-                to[width - 1] += march.by.dz_domega[j * s + a];
+                to[width - 1] += march.dz.omega[j * s + a];
             }
             std::mem::swap(&mut self.now, &mut self.next);
             if sums {

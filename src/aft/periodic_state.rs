@@ -64,10 +64,7 @@ impl ReturnMap {
         let of_product = 2 * (s * s * s) as u64;
         unit(s, &mut self.p);
         unit(s, &mut self.kept);
-        for (j, step) in march.by.dz_dz[..samples * s * s]
-            .chunks_exact((s * s).max(1))
-            .enumerate()
-        {
+        for (j, step) in march.dz.z[..samples * s * s].chunks_exact((s * s).max(1)).enumerate() {
             if j % TOGETHER == 0 {
                 interrupt.check_before(TOGETHER as u64 * of_product)?;
             }

@@ -1,4 +1,4 @@
-//! The two traits by which the tracer follows the branch of an analysis.
+//! The five traits by which the tracer follows the branch of an analysis.
 
 use crate::continuation::{Point, PointAt};
 use crate::error::Result;
@@ -60,7 +60,10 @@ pub(crate) trait Discretised {
     /// Uses the last estimate for another point of the current resolution, its errors times a factor. `false` where
     /// the point must be estimated: where the caller requests every estimate, or nothing is nonlinear.
     fn take_over_estimate(&mut self, point: &Point, factor: f64) -> Result<bool>;
+}
 
+/// The linear parts of a curve: resonances and solutions with every contact in a linear state.
+pub(crate) trait LinearParts {
     /// The resonances between two parameter values with the contacts in their linear state; `None` where they cannot
     /// be computed, or the response with linear contacts is not a rational function of the parameter.
     fn resonances(&mut self, _range: Range) -> Result<Option<Vec<Resonance>>> {
@@ -73,6 +76,23 @@ pub(crate) trait Discretised {
         Ok(None)
     }
 
+    /// Selects the most accurate evaluation for [`Self::linear_at`].
+    fn set_accurate(&mut self, _accurate: bool) {}
+
+    /// Largest share of its linear range that a contact uses at a point.
+    fn linear_share(&mut self, _point: &Point) -> Result<f64> {
+        Ok(f64::NAN)
+    }
+
+    /// Whether every contact was linear at the last recorded point of the curve, and the analysis follows it as a
+    /// linear response.
+    fn is_linear(&self) -> bool {
+        false
+    }
+}
+
+/// Stability, branch points and other starts of a curve.
+pub(crate) trait Judged {
     /// The observed amplitude at which the motion needs neither force nor artificial damping; `None` where there is no
     /// such motion.
     fn level_of_limit_cycles(&self) -> Option<f64> {
@@ -89,15 +109,24 @@ pub(crate) trait Discretised {
         false
     }
 
-    /// Further responses whose peaks are sought.
-    fn further_responses(&self) -> core::ops::Range<usize> {
-        0..0
-    }
-
     /// Whether a solution at any parameter may be sought as the first one was. For a nonlinear mode this could find
     /// another mode.
     fn may_start_anywhere(&self) -> bool {
         false
+    }
+
+    /// Stability of the last two points of the curve, in their order; only at the first call after the last one was
+    /// recorded. `None` where stability is not computed.
+    fn take_verdicts(&mut self) -> Option<(Verdict, Verdict)> {
+        None
+    }
+}
+
+/// Responses whose peaks and values are sought beside the observed amplitude.
+pub(crate) trait Observed {
+    /// Further responses whose peaks are sought.
+    fn further_responses(&self) -> core::ops::Range<usize> {
+        0..0
     }
 
     /// Whether peaks of the amplitude that the problem observes are sought.
@@ -119,14 +148,6 @@ pub(crate) trait Discretised {
     fn reading_of(&mut self, _response: usize, (_point, _resolution): PointAt<'_>) -> Result<Option<Seen>> {
         Ok(None)
     }
-
-    /// Selects the most accurate evaluation for [`Self::linear_at`].
-    fn set_accurate(&mut self, _accurate: bool) {}
-
-    /// Largest share of its linear range that a contact uses at a point.
-    fn linear_share(&mut self, _point: &Point) -> Result<f64> {
-        Ok(f64::NAN)
-    }
 }
 
 /// Storage of the points of an analysis.
@@ -140,18 +161,6 @@ pub(crate) trait Recorder {
     /// Records a sharpened point beside the curve.
     fn record_special(&mut self, kind: SpecialKind, point: &Point) -> Result<()>;
 
-    /// Whether every contact was linear at the last recorded point of the curve, and the analysis follows it as a
-    /// linear response.
-    fn is_linear(&self) -> bool {
-        false
-    }
-
-    /// Stability of the last two points of the curve, in their order; only at the first call after the last one was
-    /// recorded. `None` where stability is not computed.
-    fn take_verdicts(&mut self) -> Option<(Verdict, Verdict)> {
-        None
-    }
-
     /// Factor by which more samples of the laws without exact events are required to meet the tolerance; 1 if none
     /// are.
     fn sampling_factor(&self) -> usize;
@@ -161,6 +170,6 @@ pub(crate) trait Recorder {
 }
 
 /// An analysis that can be followed along its branch.
-pub(crate) trait Traceable: Discretised + Recorder {}
+pub(crate) trait Traceable: Discretised + LinearParts + Judged + Observed + Recorder {}
 
-impl<T: Discretised + Recorder> Traceable for T {}
+impl<T: Discretised + LinearParts + Judged + Observed + Recorder> Traceable for T {}

@@ -91,7 +91,7 @@ pub struct Asked<'a> {
     responses: &'a [Response<'a>],
 }
 
-/// What earlier estimates told.
+/// Ratios, changes and errors that earlier estimates told.
 pub struct Judged {
     ratio: KeptRatio,
     changes: KeptChanges,

@@ -2,7 +2,7 @@
 //!
 //! `controller` chooses among the levels of `harmonic_levels` by a tolerance: it collects the signs of a point, asks the table of
 //! `decision`, which also sees the state of the branch from `harmonic_history`, and carries out the answer.
-//! `estimate_spacing` tells which points need an estimate. An analysis implements the two traits of `discretised`;
+//! `estimate_spacing` tells which points need an estimate. An analysis implements the five traits of `discretised`;
 //! `resolutions` stores the equations at the levels of a run, and `transfer` converts points from one to another.
 //!
 //! `estimate` has the error of a solved point: `forced_response_error` and `mode_error` make it, from solutions of the

@@ -30,7 +30,7 @@ pub struct ContactForces<'a> {
     told: ContactStates,
 }
 
-/// What contacts feel at rest, and how much of it.
+/// Static motions and forces of contacts, and how much of them is there.
 pub struct StaticPart {
     /// Scale factor s: every law f(y) is replaced by s·f(y/s).
     factor: f64,

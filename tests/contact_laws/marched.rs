@@ -52,11 +52,11 @@ impl Hysteretic for Maxwell {
             let pull = self.k * half * (before + now);
             let next = ((1.0 - s) * z + pull) / (1.0 + s);
             out.z[j] = next;
-            out.by.dz_dz[j] = (1.0 - s) / (1.0 + s);
-            out.by.dz_dv_before[j] = self.k * half / (1.0 + s);
-            out.by.dz_dv[j] = self.k * half / (1.0 + s);
+            out.dz.z[j] = (1.0 - s) / (1.0 + s);
+            out.dz.v_before[j] = self.k * half / (1.0 + s);
+            out.dz.v[j] = self.k * half / (1.0 + s);
             // half and s go with 1/ω.
-            out.by.dz_domega[j] = -(s * (-z - next) + pull) / (omega * (1.0 + s));
+            out.dz.omega[j] = -(s * (-z - next) + pull) / (omega * (1.0 + s));
             out.f[j] = next + self.c * now;
             out.df_dz[j] = 1.0;
             out.df_dv[j] = self.c;

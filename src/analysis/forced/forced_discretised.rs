@@ -13,7 +13,7 @@ use crate::continuation::corrector::Outcome;
 use crate::continuation::resolve::resolve;
 use crate::continuation::{Metric, Point, PointAt, Settings};
 use crate::error::{Result, boxed, try_copy, try_extend, try_vec};
-use crate::harmonics::discretised::{Assessment, Discretised, Recorder};
+use crate::harmonics::discretised::{Assessment, Discretised, Judged, LinearParts, Observed, Recorder};
 use crate::harmonics::estimate_spacing::share_of_highest;
 use crate::harmonics::forced_response_error::ForcedEstimator;
 use crate::harmonics::harmonic_levels::HarmonicLevels;
@@ -119,7 +119,7 @@ pub(crate) struct ForcedStability<'a> {
     fine: Option<FineMotion<'a>>,
 }
 
-/// What is told of a run.
+/// Facts of a run that are told.
 pub(crate) struct ForcedTold {
     /// Newton iterations of the first point.
     first_iterations: usize,
@@ -490,7 +490,9 @@ impl Discretised for ForcedDiscretised<'_> {
         }
         Ok(true)
     }
+}
 
+impl LinearParts for ForcedDiscretised<'_> {
     fn resonances(&mut self, range: Range) -> Result<Option<Vec<Resonance>>> {
         let condensed = &self.resolutions.current.resolution.condensed;
         if condensed.is_reduced() {
@@ -532,6 +534,17 @@ impl Discretised for ForcedDiscretised<'_> {
         self.linear_response.accurate = accurate;
     }
 
+    fn linear_share(&mut self, point: &Point) -> Result<f64> {
+        let problem = &mut self.resolutions.current.problem;
+        problem.linear_share(point.unknowns(), point.parameter())
+    }
+
+    fn is_linear(&self) -> bool {
+        self.state.linear
+    }
+}
+
+impl Judged for ForcedDiscretised<'_> {
     fn verdict(&mut self, point: &Point) -> Result<Option<Verdict>> {
         self.state.stale |= self.verdicts.fine.is_some();
         self.refresh(point)?;
@@ -545,6 +558,16 @@ impl Discretised for ForcedDiscretised<'_> {
         found.transpose()
     }
 
+    fn may_start_anywhere(&self) -> bool {
+        true
+    }
+
+    fn take_verdicts(&mut self) -> Option<(Verdict, Verdict)> {
+        self.verdicts.of_points.as_mut()?.take_last()
+    }
+}
+
+impl Observed for ForcedDiscretised<'_> {
     fn further_responses(&self) -> core::ops::Range<usize> {
         usize::from(self.responses.is_observed())..self.responses.list.len()
     }
@@ -561,10 +584,6 @@ impl Discretised for ForcedDiscretised<'_> {
         self.read_response(response, at)
     }
 
-    fn may_start_anywhere(&self) -> bool {
-        true
-    }
-
     fn observes_peaks(&self) -> bool {
         self.responses.list.is_empty() || self.responses.is_observed()
     }
@@ -575,11 +594,6 @@ impl Discretised for ForcedDiscretised<'_> {
             (seen.amplitude, seen.slope) = found.observed();
         }
         Ok(seen)
-    }
-
-    fn linear_share(&mut self, point: &Point) -> Result<f64> {
-        let problem = &mut self.resolutions.current.problem;
-        problem.linear_share(point.unknowns(), point.parameter())
     }
 }
 
@@ -609,14 +623,6 @@ impl Recorder for ForcedDiscretised<'_> {
         }
         self.resolutions.note_recorded();
         Ok(())
-    }
-
-    fn is_linear(&self) -> bool {
-        self.state.linear
-    }
-
-    fn take_verdicts(&mut self) -> Option<(Verdict, Verdict)> {
-        self.verdicts.of_points.as_mut()?.take_last()
     }
 
     /// Solves the point once more at its frequency with a factorised flexibility, since along the sweep this may be a

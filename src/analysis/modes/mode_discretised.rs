@@ -6,7 +6,7 @@ use crate::condense::Reduction;
 use crate::continuation::resolve::resolve;
 use crate::continuation::{Metric, Point, Settings};
 use crate::error::{Result, boxed, try_copy};
-use crate::harmonics::discretised::{Assessment, Discretised, Recorder};
+use crate::harmonics::discretised::{Assessment, Discretised, Judged, LinearParts, Observed, Recorder};
 use crate::harmonics::estimate_spacing::share_of_highest;
 use crate::harmonics::harmonic_levels::HarmonicLevels;
 use crate::harmonics::mode_error::{ModeEstimator, ModeState, NO_DAMPING};
@@ -327,7 +327,11 @@ impl Discretised for ModeDiscretised<'_> {
         self.errors.estimated = Some((of_frequency * factor, of_damping * factor));
         Ok(true)
     }
+}
 
+impl LinearParts for ModeDiscretised<'_> {}
+
+impl Judged for ModeDiscretised<'_> {
     fn seeks_branch_points(&self) -> bool {
         let branch = self.recorder.branch();
         let last = branch.points().checked_sub(1).and_then(|last| branch.mode_at(last));
@@ -342,6 +346,8 @@ impl Discretised for ModeDiscretised<'_> {
         Some(1.0 + unknowns[1])
     }
 }
+
+impl Observed for ModeDiscretised<'_> {}
 
 impl Recorder for ModeDiscretised<'_> {
     fn record(&mut self, point: &Point) -> Result<()> {

@@ -126,12 +126,12 @@ impl<D: Fn(f64, f64) -> f64> Compared<'_, D> {
         let (d, s) = (at.directions, at.states);
         for (row, size) in sizes.iter().enumerate() {
             let (tangent, column, given) = match self.moved {
-                Perturbed::State(k) => (Tangent::StateByState, k, at.by.dz_dz[row * s + k]),
-                Perturbed::Motion(true, k) => (Tangent::StateByMotionBefore, k, at.by.dz_du_before[row * d + k]),
-                Perturbed::Motion(false, k) => (Tangent::StateByMotion, k, at.by.dz_du[row * d + k]),
-                Perturbed::Velocity(true, k) => (Tangent::StateByVelocityBefore, k, at.by.dz_dv_before[row * d + k]),
-                Perturbed::Velocity(false, k) => (Tangent::StateByVelocity, k, at.by.dz_dv[row * d + k]),
-                Perturbed::Frequency => (Tangent::StateByFrequency, 0, at.by.dz_domega[row]),
+                Perturbed::State(k) => (Tangent::StateByState, k, at.dz.z[row * s + k]),
+                Perturbed::Motion(true, k) => (Tangent::StateByMotionBefore, k, at.dz.u_before[row * d + k]),
+                Perturbed::Motion(false, k) => (Tangent::StateByMotion, k, at.dz.u[row * d + k]),
+                Perturbed::Velocity(true, k) => (Tangent::StateByVelocityBefore, k, at.dz.v_before[row * d + k]),
+                Perturbed::Velocity(false, k) => (Tangent::StateByVelocity, k, at.dz.v[row * d + k]),
+                Perturbed::Frequency => (Tangent::StateByFrequency, 0, at.dz.omega[row]),
             };
             let entry = JacobianGap {
                 gap: 0.0,

@@ -214,7 +214,7 @@ pub trait PiecewiseLinear {
     /// State of the contact on a piece of it.
     fn state(&self, piece: &Piece) -> State;
 
-    /// The ends of slips that move with the motion, see [`SlidingEnds`]; `None` for a law whose force is continuous.
+    /// The ends of slips that move with the motion, see `SlidingEnds`; `None` for a law whose force is continuous.
     fn sliding_ends(&self) -> Option<&dyn SlidingEnds> {
         None
     }

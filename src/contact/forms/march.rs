@@ -15,7 +15,7 @@ pub struct March {
     /// States, samples × s.
     pub z: Vec<f64>,
     /// Derivatives of the states at the end of a step.
-    pub by: StateDerivatives,
+    pub dz: StateDerivatives,
     /// ∂fⱼ/∂zⱼ, d × s per sample.
     pub df_dz: Vec<f64>,
     /// ∂fⱼ/∂uⱼ at given zⱼ, d × d per sample.
@@ -30,18 +30,18 @@ pub struct March {
 #[derive(Clone, Debug)]
 pub struct StateDerivatives {
     /// ∂zⱼ/∂zⱼ₋₁, s × s per sample.
-    pub dz_dz: Vec<f64>,
+    pub z: Vec<f64>,
     /// ∂zⱼ/∂uⱼ₋₁, s × d per sample.
-    pub dz_du_before: Vec<f64>,
+    pub u_before: Vec<f64>,
     /// ∂zⱼ/∂uⱼ, s × d per sample.
-    pub dz_du: Vec<f64>,
+    pub u: Vec<f64>,
     /// ∂zⱼ/∂vⱼ₋₁, s × d per sample.
-    pub dz_dv_before: Vec<f64>,
+    pub v_before: Vec<f64>,
     /// ∂zⱼ/∂vⱼ, s × d per sample.
-    pub dz_dv: Vec<f64>,
+    pub v: Vec<f64>,
     /// ∂zⱼ/∂ω at given motion, velocity and zⱼ₋₁, s per sample: the time step of a law that integrates
     /// a rate is 2π/(ω·samples).
-    pub dz_domega: Vec<f64>,
+    pub omega: Vec<f64>,
 }
 
 impl March {
@@ -57,13 +57,13 @@ impl March {
             states,
             f: memory(d)?,
             z: memory(s)?,
-            by: StateDerivatives {
-                dz_dz: memory(s.saturating_mul(s))?,
-                dz_du_before: memory(s.saturating_mul(d))?,
-                dz_du: memory(s.saturating_mul(d))?,
-                dz_dv_before: memory(s.saturating_mul(d))?,
-                dz_dv: memory(s.saturating_mul(d))?,
-                dz_domega: memory(s)?,
+            dz: StateDerivatives {
+                z: memory(s.saturating_mul(s))?,
+                u_before: memory(s.saturating_mul(d))?,
+                u: memory(s.saturating_mul(d))?,
+                v_before: memory(s.saturating_mul(d))?,
+                v: memory(s.saturating_mul(d))?,
+                omega: memory(s)?,
             },
             df_dz: memory(d.saturating_mul(s))?,
             df_du: memory(d.saturating_mul(d))?,
@@ -78,12 +78,12 @@ impl March {
         for (values, size) in [
             (&mut self.f, d),
             (&mut self.z, s),
-            (&mut self.by.dz_dz, s * s),
-            (&mut self.by.dz_du_before, s * d),
-            (&mut self.by.dz_du, s * d),
-            (&mut self.by.dz_dv_before, s * d),
-            (&mut self.by.dz_dv, s * d),
-            (&mut self.by.dz_domega, s),
+            (&mut self.dz.z, s * s),
+            (&mut self.dz.u_before, s * d),
+            (&mut self.dz.u, s * d),
+            (&mut self.dz.v_before, s * d),
+            (&mut self.dz.v, s * d),
+            (&mut self.dz.omega, s),
             (&mut self.df_dz, d * s),
             (&mut self.df_du, d * d),
             (&mut self.df_dv, d * d),

@@ -8,7 +8,7 @@ use crate::continuation::Point;
 use crate::continuation::step_control::Detail;
 use crate::error::{Result, Status};
 use crate::harmonics::Estimate;
-use crate::harmonics::discretised::{Assessment, Discretised, Recorder};
+use crate::harmonics::discretised::{Assessment, Discretised, Judged, LinearParts, Observed, Recorder};
 use crate::harmonics::harmonic_levels::HarmonicLevels;
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::Interrupt;
@@ -85,7 +85,9 @@ impl Discretised for Misled<'_, '_> {
     fn take_over_estimate(&mut self, point: &Point, factor: f64) -> Result<bool> {
         self.response.take_over_estimate(point, factor)
     }
+}
 
+impl LinearParts for Misled<'_, '_> {
     fn resonances(&mut self, range: Range) -> Result<Option<Vec<Resonance>>> {
         self.response.resonances(range)
     }
@@ -101,7 +103,15 @@ impl Discretised for Misled<'_, '_> {
     fn linear_share(&mut self, point: &Point) -> Result<f64> {
         self.response.linear_share(point)
     }
+
+    fn is_linear(&self) -> bool {
+        self.response.is_linear()
+    }
 }
+
+impl Judged for Misled<'_, '_> {}
+
+impl Observed for Misled<'_, '_> {}
 
 impl Recorder for Misled<'_, '_> {
     fn record(&mut self, point: &Point) -> Result<()> {
@@ -114,10 +124,6 @@ impl Recorder for Misled<'_, '_> {
 
     fn record_special(&mut self, kind: SpecialKind, point: &Point) -> Result<()> {
         self.response.record_special(kind, point)
-    }
-
-    fn is_linear(&self) -> bool {
-        self.response.is_linear()
     }
 
     fn sampling_factor(&self) -> usize {
