@@ -7,7 +7,7 @@
 //! > K = Δ + Û V̂ᵀ,  Δ = diag(s D, 1),  K⁻¹ = (1 − W C⁻¹ V̂ᵀ) Δ⁻¹,  W = Δ⁻¹ Û,  C = 1 + V̂ᵀ W,  det K = det Δ · det C,
 //!
 //! where det Δ is positive. The terms are rows and columns of J − D, each through the largest number of the one before (adaptive
-//! cross approximation, Bebendorf, Numer. Math. 86 (2000) 565, doi:10.1007/PL00005410): r of them cost n r² operations. The rest is
+//! cross approximation, Bebendorf, Numerische Mathematik 86 (2000) 565, doi:10.1007/PL00005410): r of them cost n r² operations. The rest is
 //! not bounded: the caller refines solutions with the whole matrix, and factors that where they do not converge.
 
 use crate::error::{Result, Status, try_vec};
