@@ -43,6 +43,10 @@ const MOST_HALF_TURNS: usize = 64;
 /// Kind: rounding.
 const SAME_TIME: f64 = 1e-12;
 
+/// Difference of two times of one event, as phases, up to which a motion counts as repeated after [`MOST_HALF_TURNS`].
+/// Kind: tuned; measured on: sweeps of a chain of 8 with a rigid slider through the onset of slip, where it is 4e-6.
+const NEARLY_SAME_TIME: f64 = 1e-4;
+
 /// Constants of a slider over the force on its mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlidingMass {
@@ -162,7 +166,8 @@ impl PiecewiseLinear for SlidingMass {
             self.push(Event::at(0.0, 0.0), Event::at(PI, 0.0), pieces);
             return Ok(());
         };
-        for _ in 0..MOST_HALF_TURNS {
+        let mut largest = 0.0_f64;
+        for turn in 0..MOST_HALF_TURNS {
             pieces.clear();
             begin = walk.rebased(begin);
             let (end, from) = (begin.tau + PI, walk.at);
@@ -174,6 +179,9 @@ impl PiecewiseLinear for SlidingMass {
                 continue;
             };
             let off = event.tau - end;
+            if 2 * turn >= MOST_HALF_TURNS {
+                largest = largest.max(off.abs());
+            }
             if off.abs() <= SAME_TIME {
                 return Ok(());
             }
@@ -182,6 +190,10 @@ impl PiecewiseLinear for SlidingMass {
             if !followed.sticks && step.abs() < 0.5 * PI {
                 begin = walk.moved_begin((start, from), step).unwrap_or(begin);
             }
+        }
+        // Where slips hardly begin, several half turns may repeat themselves together.
+        if largest <= NEARLY_SAME_TIME {
+            return Ok(());
         }
         fail!(
             NoConvergence,
