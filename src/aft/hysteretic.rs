@@ -15,7 +15,7 @@ use crate::aft::hysteretic_derivatives::{Sensitivity, Signals};
 use crate::aft::periodic_state::{ReturnMap, largest};
 use crate::contact::law::Hysteretic;
 use crate::contact::march::March;
-use crate::error::{Error, Result, Status, fail, try_vec};
+use crate::error::{Error, Result, Status, boxed, fail, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 
@@ -34,7 +34,7 @@ pub struct HystereticEvaluator {
     base: f64,
     signals: Signals,
     load: NormalLoad,
-    march: March,
+    march: Box<March>,
     map: ReturnMap,
     /// Memory for derivatives; `None` where the force alone is evaluated.
     sensitivity: Option<Sensitivity>,
@@ -94,7 +94,7 @@ impl HystereticEvaluator {
                 u: memory(2 * d)?,
                 v: memory(if law.uses_velocity() { 2 * d } else { 0 })?,
             },
-            march: March::new(d, s, samples)?,
+            march: boxed(|| March::new(d, s, samples))?,
             map: ReturnMap::new(s)?,
             sensitivity: if force_alone {
                 None

@@ -234,6 +234,7 @@ impl AdaptivityController {
     }
 
     /// Estimates once more the error of a point that is kept although the first estimate left it unknown; whether it meets the tolerance.
+    #[inline(never)]
     fn estimate_again(&mut self, equations: &mut dyn Discretised, point: &Point) -> Result<bool> {
         let Some(found) = equations.estimate_again(point)? else {
             return Ok(false);

@@ -21,6 +21,10 @@ const NODES_BEFORE: usize = 3;
 /// Kind: tuned; measured on: not recorded.
 const PARTS_OF_ARC: usize = 16;
 
+/// Largest relative distance of two solutions that are one.
+/// Kind: rounding.
+const SAME_SOLUTION: f64 = 1e-11;
+
 impl BranchTracer<'_> {
     /// Records the peaks of the observed response between two neighbours.
     pub(super) fn find_peaks_between(
@@ -98,10 +102,17 @@ impl BranchTracer<'_> {
         let mut locator = None;
         for response in analysis.further_responses() {
             let mut k = start;
+            // A solution is read once: its slope may be rounding, and have another sign when it is read again.
+            analysis.select(resolution)?;
+            let mut first = seen_here(analysis, response, &arc[start])?;
             while k + 1 < arc.len() {
                 k += 1;
                 analysis.select(resolution)?;
-                if let Some(found) = self.find_peaks_of(analysis, response, (&arc, k), &mut locator)? {
+                let last = seen_here(analysis, response, &arc[k])?;
+                let ends = (&first, &last);
+                let found = self.find_peaks_of(analysis, response, (&arc, k), ends, &mut locator)?;
+                first = last;
+                if let Some(found) = found {
                     arc.try_reserve(1).map_err(|_| Error::out_of_memory(CONTEXT))?;
                     arc.insert(k, found);
                     k += 1;
@@ -120,14 +131,22 @@ impl BranchTracer<'_> {
         analysis: &mut dyn Traceable,
         response: usize,
         (arc, next): (&[(Point, usize)], usize),
+        (first, last): (&Point, &Point),
         locator: &mut Option<Locator>,
     ) -> Result<Option<(Point, usize)>> {
         let resolution = analysis.resolution();
-        let first = seen_here(analysis, response, &arc[next - 1])?;
-        let last = seen_here(analysis, response, &arc[next])?;
-        let (first, last) = (&first, &last);
         let brackets = self.predicted_brackets(first, last)?;
         let kind = SpecialKind::PeakOf(response);
+        // Responses with one peak, as those of equal blades, divide the arc at the same place; no search succeeds between two such.
+        if SpecialPoint::Peak.between(first, last) && are_one(first, last) {
+            let point = if growth(first).abs() < growth(last).abs() {
+                first
+            } else {
+                last
+            };
+            self.record_special(analysis, kind, point)?;
+            return Ok(None);
+        }
         if SpecialPoint::Peak.between(first, last) && brackets.len() <= 1 {
             // Nodes beyond the two have the harmonics of the arc.
             let (mut nodes, mut place) = (Vec::new(), 0);
@@ -220,6 +239,23 @@ impl BranchTracer<'_> {
         }
         Ok(found)
     }
+}
+
+/// Half the change of |amplitude|² along the curve.
+fn growth(point: &Point) -> f64 {
+    (point.amplitude.conj() * point.slope).re
+}
+
+/// Whether two solutions differ by rounding.
+fn are_one(a: &Point, b: &Point) -> bool {
+    let (size, distance) =
+        a.v.iter()
+            .zip(&b.v)
+            .fold((0.0_f64, 0.0_f64), |(size, distance), (a, b)| {
+                (size + a * a, distance + (a - b).powi(2))
+            });
+    let apart = (a.parameter() - b.parameter()).abs();
+    distance.sqrt() <= SAME_SOLUTION * size.sqrt() && apart <= SAME_SOLUTION * a.parameter().abs()
 }
 
 /// A solution of another resolution, transferred to the current harmonics, as a response sees it.

@@ -24,6 +24,8 @@ const UNFELT: f64 = 0.05;
 impl Continuation {
     /// Position of a resonance that the branch feels within the step to `point`, as a share of the change of the parameter; the
     /// first one of the resonances `known`, which ascend.
+    // Its points do not lie on the stack under a correction.
+    #[inline(never)]
     pub(super) fn crossed(
         &self,
         problem: &mut dyn Problem,
