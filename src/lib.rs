@@ -78,11 +78,11 @@ mod tracing;
 
 // Models.
 pub use contact::Contact;
-pub use contact::iwan::Iwan;
+pub use contact::described::iwan::Iwan;
+pub use contact::described::patch::Patch;
+pub use contact::described::relative_motion::{Direction, Frame};
+pub use contact::described::rigid_point::RigidPoint;
 pub use contact::laws::*;
-pub use contact::patch::Patch;
-pub use contact::relative_motion::{Direction, Frame};
-pub use contact::rigid_point::RigidPoint;
 #[doc(inline)]
 pub use linalg::sparse_storage::matrix_view::{MatrixView, Part, Storage, Values};
 pub use model::Model;
@@ -97,7 +97,7 @@ pub use model::wheels::blade_modes::BladeModes;
 pub use model::wheels::mistuning::{BladeProperty, Mistuning};
 
 // Parameters.
-pub use contact::constants::Constant;
+pub use contact::forms::constants::Constant;
 pub use sensitivity::{Parameter, Reason};
 
 // Analyses.
@@ -152,8 +152,8 @@ pub use studies::wheel_peaks::{BladePeak, WheelPeaks, wheel_peaks};
 
 // Results.
 pub use condense::Reduction;
-pub use contact::contact_state::State;
-pub use contact::time_piece::Grazing;
+pub use contact::forms::contact_state::State;
+pub use contact::forms::time_piece::Grazing;
 #[doc(inline)]
 pub use error::{Error, Result, Status};
 #[doc(inline)]

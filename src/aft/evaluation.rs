@@ -1,6 +1,6 @@
 //! The result of evaluating a law: harmonics of its force, their Jacobian, and shares of the period.
 
-use crate::contact::contact_state::State;
+use crate::contact::forms::contact_state::State;
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;

@@ -8,7 +8,7 @@ use crate::aft::piecewise_exact::Exact;
 use crate::aft::piecewise_sampled::Sampled;
 use crate::aft::plane_friction::PlaneFrictionEvaluator;
 use crate::aft::varying_normal_load::VaryingNormalLoadEvaluator;
-use crate::contact::law::{Form, Law};
+use crate::contact::forms::law::{Form, Law};
 use crate::error::{Result, boxed, fail, try_push};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;

@@ -13,8 +13,8 @@
 use crate::aft::evaluation::Evaluation;
 use crate::aft::hysteretic_derivatives::{Sensitivity, Signals};
 use crate::aft::periodic_state::{ReturnMap, largest};
-use crate::contact::law::Hysteretic;
-use crate::contact::march::March;
+use crate::contact::forms::law::Hysteretic;
+use crate::contact::forms::march::March;
 use crate::error::{Error, Result, Status, boxed, fail, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;

@@ -3,7 +3,7 @@
 
 use crate::aft::evaluation::Evaluation;
 use crate::aft::periodic_state::ReturnMap;
-use crate::contact::march::March;
+use crate::contact::forms::march::March;
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;

@@ -5,8 +5,8 @@
 use crate::aft::evaluation::{Evaluation, is_whole};
 use crate::aft::jacobian_block::{add_stiffness, pack};
 use crate::aft::toeplitz::Toeplitz;
-use crate::contact::contact_state::State;
-use crate::contact::piece::Piece;
+use crate::contact::forms::contact_state::State;
+use crate::contact::forms::piece::Piece;
 use crate::error::{Result, try_vec};
 use crate::fourier::{HarmonicSet, jet};
 use crate::interrupt::Interrupt;

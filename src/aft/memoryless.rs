@@ -11,8 +11,8 @@
 
 use crate::aft::evaluation::Evaluation;
 use crate::aft::toeplitz::Toeplitz;
-use crate::contact::law::Memoryless;
-use crate::contact::samples::Samples;
+use crate::contact::forms::law::Memoryless;
+use crate::contact::forms::samples::Samples;
 use crate::error::{Result, fail, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::fourier::transform::{Half, Lane, Transform};

@@ -15,8 +15,8 @@
 
 use crate::aft::evaluation::Evaluation;
 use crate::aft::jacobian_assembly::Assembly;
-use crate::contact::law::SlidingEnds;
-use crate::contact::piece::Piece;
+use crate::contact::forms::law::SlidingEnds;
+use crate::contact::forms::piece::Piece;
 use crate::error::{Result, try_vec};
 use crate::fourier::{HarmonicSet, jet};
 use crate::interrupt::Interrupt;

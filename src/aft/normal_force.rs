@@ -7,8 +7,8 @@
 
 use crate::aft::evaluation::Evaluation;
 use crate::aft::varying_normal_load::VaryingNormalLoadEvaluator;
-use crate::contact::law::VaryingNormalLoad;
-use crate::contact::piece::Piece;
+use crate::contact::forms::law::VaryingNormalLoad;
+use crate::contact::forms::piece::Piece;
 use crate::error::Result;
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;

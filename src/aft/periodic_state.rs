@@ -11,7 +11,7 @@
 //! periodic start: (I − P + Π) S = q + Π S_before with q the derivative of the march at a fixed start and S_before
 //! that of the start marched from.
 
-use crate::contact::march::March;
+use crate::contact::forms::march::March;
 use crate::error::{Result, Status, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::factors::lu::Lu;

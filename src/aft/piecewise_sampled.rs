@@ -4,8 +4,8 @@
 
 use crate::aft::evaluation::Evaluation;
 use crate::aft::jacobian_assembly::Assembly;
-use crate::contact::law::PiecewiseLinear;
-use crate::contact::piece::Piece;
+use crate::contact::forms::law::PiecewiseLinear;
+use crate::contact::forms::piece::Piece;
 use crate::error::{Error, Result, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;

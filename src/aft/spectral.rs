@@ -9,7 +9,7 @@
 
 use crate::aft::evaluation::Evaluation;
 use crate::aft::jacobian_assembly::Assembly;
-use crate::contact::law::Spectral;
+use crate::contact::forms::law::Spectral;
 use crate::error::Result;
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;

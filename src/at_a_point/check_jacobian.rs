@@ -8,9 +8,9 @@ mod test_motion;
 pub use crate::at_a_point::check_jacobian::jacobian_gap::{JacobianGap, Tangent};
 use crate::at_a_point::check_jacobian::step_derivatives::with_states;
 use crate::at_a_point::check_jacobian::test_motion::{CONTEXT, Motion, SAMPLES, sizes, step_of};
-use crate::contact::law::Memoryless;
+use crate::contact::forms::law::Memoryless;
+use crate::contact::forms::samples::Samples;
 use crate::contact::laws::User;
-use crate::contact::samples::Samples;
 use crate::error::{Error, Result, fail, try_copy, try_vec};
 use crate::model::Model;
 

@@ -2,7 +2,7 @@
 
 use crate::condense::blocks::memory_limit::{beyond, mega, within};
 use crate::contact::Contact;
-use crate::contact::law::Form;
+use crate::contact::forms::law::Form;
 use crate::error::Result;
 use crate::model::Model;
 use crate::model::matrices::structure::MatrixKind;

@@ -6,9 +6,9 @@
 //! 2003, 219 to 228).
 
 use crate::contact::Contact;
-use crate::contact::constants::Constant;
-use crate::contact::relative_motion::Frame;
-use crate::contact::rigid_point::RigidPoint;
+use crate::contact::described::relative_motion::Frame;
+use crate::contact::described::rigid_point::RigidPoint;
+use crate::contact::forms::constants::Constant;
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::linalg::sparse_storage::matrix_view::{MatrixView, Part, Storage, Values};
 use crate::model::Model;

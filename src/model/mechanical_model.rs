@@ -1,10 +1,10 @@
 //! The model: a structure with its contacts, springs and forces.
 
 use crate::contact::Contact;
-use crate::contact::constants::Constant;
-use crate::contact::iwan::Iwan;
-use crate::contact::patch::Patch;
-use crate::contact::relative_motion::Direction;
+use crate::contact::described::iwan::Iwan;
+use crate::contact::described::patch::Patch;
+use crate::contact::described::relative_motion::Direction;
+use crate::contact::forms::constants::Constant;
 use crate::error::{Error, Result, fail, try_copy, try_extend, try_push, try_room};
 use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::model::excitation::Excitation;

@@ -2,7 +2,7 @@
 //! two different sides.
 
 use crate::contact::Contact;
-use crate::contact::relative_motion::Direction;
+use crate::contact::described::relative_motion::Direction;
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::model::Model;
 use crate::model::excitation::Force;

@@ -1,6 +1,6 @@
 //! Changes of a model by the parameters of a design study: constants of contacts, matrices, forces.
 
-use crate::contact::constants::Constant;
+use crate::contact::forms::constants::Constant;
 use crate::error::{Result, fail};
 use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
 use crate::linalg::sparse_storage::matrix_view::MatrixView;

@@ -16,7 +16,7 @@ mod mode_products;
 
 use crate::condense::Condensed;
 use crate::condense::by_modes::mode_flexibility::ModeFlexibility;
-use crate::contact::onset::Onset;
+use crate::contact::forms::onset::Onset;
 use crate::error::{Result, boxed, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::newton::linear_system::{Jacobian, MatrixFree};

@@ -2,7 +2,7 @@
 
 use crate::aft::{Evaluation, Evaluator};
 use crate::condense::Condensed;
-use crate::contact::force_derivative::{Combination, ForceDerivative};
+use crate::contact::forms::force_derivative::{Combination, ForceDerivative};
 use crate::contact::{Contact, Law, Role};
 use crate::error::{Result, fail, try_copy, try_vec};
 use crate::interrupt::Interrupt;

@@ -8,7 +8,7 @@
 //! the motion, and W that by the load of the contact itself at a fixed motion.
 
 use crate::condense::{AssembledLaw, Condensed};
-use crate::contact::constants::Constant;
+use crate::contact::forms::constants::Constant;
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dot;

@@ -1,6 +1,6 @@
 //! Parameters of a model: the quantities by which results are differentiated.
 
-use crate::contact::constants::Constant;
+use crate::contact::forms::constants::Constant;
 use crate::error::{Result, fail};
 use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::model::Model;

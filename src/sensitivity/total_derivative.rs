@@ -1,7 +1,7 @@
 //! The total derivative of a result by each parameter, from its adjoint.
 
 use crate::condense::Condensed;
-use crate::contact::constants::Constant;
+use crate::contact::forms::constants::Constant;
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::model::Model;

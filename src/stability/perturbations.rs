@@ -4,7 +4,7 @@
 //! of the sector whose motion it repeats, so that the map of a lapse, applied as often as the wave has lapses in a
 //! period, is the monodromy matrix of the period but for a known factor.
 
-use crate::contact::time_piece::Grazing;
+use crate::contact::forms::time_piece::Grazing;
 use crate::error::{Result, try_push};
 use crate::model::matrices::structure::Structure;
 use crate::stability::closure::Closure;

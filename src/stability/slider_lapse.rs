@@ -7,7 +7,7 @@
 //! by it stops there, and another one may follow; one change at a time leads to the unique end (Murty 1974,
 //! doi:10.1016/0024-3795(74)90001-5).
 
-use crate::contact::time_piece::Grazing;
+use crate::contact::forms::time_piece::Grazing;
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Phase;
 use crate::stability::slider_motion::{Change, Path, SliderMotion, SliderState};

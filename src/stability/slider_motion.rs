@@ -1,6 +1,6 @@
 //! The equations of motion of a block on modes, its states, and the path of a lapse by the changes of its sliders.
 
-use crate::contact::time_piece::Grazing;
+use crate::contact::forms::time_piece::Grazing;
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::fallible_matrix::copy_of_vector;

@@ -12,8 +12,8 @@
 //!
 //! Smooth laws have one piece without end and are evaluated at times; see `smooth_laws`.
 
-use crate::contact::law::{EventLaw, Form, LawInTime, Memoryless, SliderLaw, TimePart};
-use crate::contact::time_piece::Instant;
+use crate::contact::forms::law::{EventLaw, Form, LawInTime, Memoryless, SliderLaw, TimePart};
+use crate::contact::forms::time_piece::Instant;
 use crate::contact::{Contact, Role};
 use crate::error::{Result, try_push};
 use crate::interrupt::Interrupt;

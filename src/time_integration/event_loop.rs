@@ -1,7 +1,7 @@
 //! Integration from event to event through one lapse: the part of the period after which the wave has moved on by
 //! some sectors.
 
-use crate::contact::time_piece::{Grazing, Mode, TimePiece, Zeros};
+use crate::contact::forms::time_piece::{Grazing, Mode, TimePiece, Zeros};
 use crate::error::{Result, fail, try_copy, try_vec};
 use crate::interrupt::Phase;
 use crate::time_integration::event_law::Element;

@@ -7,7 +7,7 @@
 //! estimates the error and sets the step; see Hairer, Nørsett & Wanner, Solving Ordinary Differential
 //! Equations I (1993), II.7, doi:10.1007/978-3-540-78862-1.
 
-use crate::contact::time_piece::TimePiece;
+use crate::contact::forms::time_piece::TimePiece;
 use crate::error::{Error, Result, Status, fail, try_vec};
 use crate::linalg::factors::lu::Lu;
 use crate::time_integration::gauss::{GAUSS_STAGES, GaussTables};

@@ -7,7 +7,7 @@
 //! and a polynomial as well (Moler & Van Loan 2003, doi:10.1137/S00361445024180, method 1 with short steps; Jorba &
 //! Zou 2005, doi:10.1080/10586458.2005.10128904, for the choice of h).
 
-use crate::contact::time_piece::TimePiece;
+use crate::contact::forms::time_piece::TimePiece;
 use crate::error::{Result, fail, try_vec};
 use crate::time_integration::step_polynomial::{DEGREE, StepPolynomial};
 use crate::time_integration::unrolled_structure::System;

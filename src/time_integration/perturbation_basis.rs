@@ -3,7 +3,7 @@
 //! Without an event the equations of perturbations remain the same: their series may be longer than the steps of the
 //! motion, so that intervals with the same tangents are carried as one.
 
-use crate::contact::time_piece::{Grazing, TimePiece};
+use crate::contact::forms::time_piece::{Grazing, TimePiece};
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::time_integration::variation::{Interval, Variation};

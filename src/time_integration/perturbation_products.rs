@@ -6,7 +6,7 @@
 
 #![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
 
-use crate::contact::time_piece::TimePiece;
+use crate::contact::forms::time_piece::TimePiece;
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::linalg::libraries::{Arch, Simd, WithSimd};
 use crate::time_integration::variational_equations::{

@@ -2,7 +2,7 @@
 //!
 //! Within the lapse the places of the sliders δw = r·δx − δe replace δe, because they are constant while the sliders rest.
 
-use crate::contact::time_piece::Grazing;
+use crate::contact::forms::time_piece::Grazing;
 use crate::error::{Result, try_push};
 use crate::time_integration::event_law::{Row, along};
 use crate::time_integration::perturbation_basis::PerturbationBasis;

@@ -2,7 +2,7 @@
 //!
 //! A law is evaluated at one time as at the samples of a period in harmonic balance.
 
-use crate::contact::samples::Samples;
+use crate::contact::forms::samples::Samples;
 use crate::error::{Result, try_vec};
 use crate::time_integration::event_law::along;
 use crate::time_integration::unrolled_structure::System;

@@ -1,7 +1,7 @@
 //! The structure in time: M ẍ + C ẋ + K x + f = F(t) for all sectors that the wave needs, with its loads, springs and
 //! contacts.
 
-use crate::contact::time_piece::Mode;
+use crate::contact::forms::time_piece::Mode;
 use crate::error::{Result, Status, fail, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::factors::factor::Factor;

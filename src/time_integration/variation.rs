@@ -4,7 +4,7 @@
 //! Perturbations need not have the symmetry of the motion itself. The observer knows theirs; the integration reports
 //! the tangents of the motion only.
 
-use crate::contact::time_piece::{Grazing, TimePiece};
+use crate::contact::forms::time_piece::{Grazing, TimePiece};
 use crate::error::Result;
 use crate::time_integration::gauss::GaussTables;
 use crate::time_integration::smooth_laws::Smooth;

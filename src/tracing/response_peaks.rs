@@ -139,7 +139,8 @@ impl BranchTracer<'_> {
         let kind = SpecialKind::PeakOf(response);
         // Responses with one peak, as those of equal blades, divide the arc at the same place; no search succeeds between two such.
         if SpecialPoint::Peak.between(first, last) && are_one(first, last) {
-            let point = if growth(first).abs() < growth(last).abs() {
+            let point = if SpecialPoint::Peak.function(first, 1.0).abs() < SpecialPoint::Peak.function(last, 1.0).abs()
+            {
                 first
             } else {
                 last
@@ -239,11 +240,6 @@ impl BranchTracer<'_> {
         }
         Ok(found)
     }
-}
-
-/// Half the change of |amplitude|² along the curve.
-fn growth(point: &Point) -> f64 {
-    (point.amplitude.conj() * point.slope).re
 }
 
 /// Whether two solutions differ by rounding.

@@ -1,7 +1,7 @@
 //! Exact evaluation of friction in a plane under a normal load that may vary: harmonics of the force and their derivatives along the
 //! path from event to event.
 //!
-//! With u = kt·x, the limit R = a + b·y and the path of [`crate::contact::plane_path`], a stick from the time r has f = u − u(r) + f(r),
+//! With u = kt·x, the limit R = a + b·y and the path of [`crate::contact::forms::plane_path`], a stick from the time r has f = u − u(r) + f(r),
 //! and slip f = R e, so that with the spectra S of kt in stick and Eᵢ of eᵢ in slip
 //!
 //! > F = T(S) X + b T(E) Y + Σ (f(r) − u(r)) g + a ê.
@@ -24,10 +24,10 @@ use crate::aft::normal_force::Normal;
 use crate::aft::piecewise_exact::transform;
 use crate::aft::plane_friction::plane_sensitivity::PlaneSensitivity;
 use crate::aft::toeplitz::Toeplitz;
-use crate::contact::contact_state::State;
-use crate::contact::law::PlaneFriction;
-use crate::contact::plane_path::{PlaneForce, PlanePath, PlanePiece, Repetition};
-use crate::contact::radau::RADAU_STAGES;
+use crate::contact::forms::contact_state::State;
+use crate::contact::forms::law::PlaneFriction;
+use crate::contact::forms::plane_path::{PlaneForce, PlanePath, PlanePiece, Repetition};
+use crate::contact::forms::radau::RADAU_STAGES;
 use crate::error::{Result, boxed, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;

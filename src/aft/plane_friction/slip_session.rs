@@ -8,9 +8,9 @@
 //! collects the weight of the angle at the start of a panel in all that follows, so that the contributions of all panels to the
 //! Jacobian are one product of matrices, and the angle at the start of the first adds λ ⊗ δθ₀.
 
-use crate::contact::law::PlaneFriction;
-use crate::contact::plane_path::{PlanePath, PlanePiece, SlipPanel};
-use crate::contact::radau::RADAU_STAGES;
+use crate::contact::forms::law::PlaneFriction;
+use crate::contact::forms::plane_path::{PlanePath, PlanePiece, SlipPanel};
+use crate::contact::forms::radau::RADAU_STAGES;
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;

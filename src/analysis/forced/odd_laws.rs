@@ -1,8 +1,8 @@
 //! Laws of the caller that claim to be odd, f(−u, −v) = −f(u, v), at the motion of a branch: even harmonics were left out because of it.
 
-use crate::contact::law::{Form, Law};
-use crate::contact::march::March;
-use crate::contact::samples::Samples;
+use crate::contact::forms::law::{Form, Law};
+use crate::contact::forms::march::March;
+use crate::contact::forms::samples::Samples;
 use crate::error::{Error, Result, Status, try_vec};
 use crate::fourier::jet;
 use crate::model::Model;

@@ -7,7 +7,7 @@
 
 use crate::aft::{Evaluation, Evaluator};
 use crate::analysis::linear::static_solution::{NEEDS_SPEED, linear_static_motion, static_state};
-use crate::contact::constants::Constant;
+use crate::contact::forms::constants::Constant;
 use crate::contact::{Contact, Role};
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::fourier::HarmonicSet;

@@ -1,6 +1,6 @@
 //! Amplitudes at which contacts begin to slip and to lift off along a nonlinear mode.
 
-use crate::contact::onset::Onset;
+use crate::contact::forms::onset::Onset;
 use crate::continuation::special_points::Locator;
 use crate::continuation::{Point, Settings};
 use crate::error::Result;

@@ -4,8 +4,8 @@
 //! their modes and the sliders that move.
 
 use crate::analysis::perturbed::perturbed_motion::{Found, Motion, ODD};
-use crate::contact::law::{LawInTime, TimePart};
-use crate::contact::time_piece::Mode;
+use crate::contact::forms::law::{LawInTime, TimePart};
+use crate::contact::forms::time_piece::Mode;
 use crate::contact::{Contact, Role};
 use crate::error::{Result, fail, try_copy, try_extend, try_push, try_vec};
 use crate::interrupt::Interrupt;

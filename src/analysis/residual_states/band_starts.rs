@@ -8,7 +8,7 @@ use crate::analysis::residual_states::band_search::Search;
 use crate::analysis::residual_states::freedom::free_sliders;
 use crate::analysis::residual_states::held_sliders::{HeldSliders, HeldState};
 use crate::analysis::residual_states::stuck_contacts::{StuckSlider, keeps_force};
-use crate::contact::constants::Constant;
+use crate::contact::forms::constants::Constant;
 use crate::error::{Result, Status, try_copy, try_push, try_vec};
 use crate::hooks::Hooks;
 use crate::interrupt::Interrupt;

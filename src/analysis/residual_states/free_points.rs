@@ -6,7 +6,7 @@
 use crate::analysis::residual_states::held_sliders::HELD;
 use crate::analysis::residual_states::stuck_contacts::{StuckSlider, keeps_force, stuck_contacts};
 use crate::condense::Condensed;
-use crate::contact::constants::Constant;
+use crate::contact::forms::constants::Constant;
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;

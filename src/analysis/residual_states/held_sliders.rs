@@ -9,7 +9,7 @@
 use crate::analysis::residual_states::slip_margins::{Held, Margin};
 use crate::analysis::residual_states::stuck_contacts::StuckSlider;
 use crate::condense::Condensed;
-use crate::contact::constants::Constant;
+use crate::contact::forms::constants::Constant;
 use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;

@@ -6,7 +6,7 @@
 
 use crate::analysis::modes::nonlinear_mode::nonlinear_mode;
 use crate::analysis::residual_states::stuck_contacts::{StuckSlider, stuck_contacts};
-use crate::contact::constants::Constant;
+use crate::contact::forms::constants::Constant;
 use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
 use crate::hooks::Hooks;
 use crate::interrupt::{Interrupt, Phase};

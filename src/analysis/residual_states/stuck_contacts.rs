@@ -3,7 +3,7 @@
 
 use crate::aft::{Evaluation, Evaluator};
 use crate::condense::Condensed;
-use crate::contact::constants::Constant;
+use crate::contact::forms::constants::Constant;
 use crate::contact::{Contact, Role};
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;

@@ -3,9 +3,9 @@
 
 use crate::at_a_point::check_jacobian::jacobian_gap::{JacobianGap, Tangent};
 use crate::at_a_point::check_jacobian::test_motion::{CONTEXT, Motion, SAMPLES, sizes, step_of};
-use crate::contact::law::Hysteretic;
+use crate::contact::forms::law::Hysteretic;
+use crate::contact::forms::march::March;
 use crate::contact::laws::User;
-use crate::contact::march::March;
 use crate::error::{Result, try_vec};
 
 /// One step of a law with states, as a period of two samples: the first one is compared, the second is the one before

@@ -7,7 +7,7 @@ use crate::capi::crossing::indices::{Sides, side, with_named_argument};
 use crate::capi::structures::model::hbvib_model;
 use crate::capi::version_and_errors::hbvib_status;
 use crate::contact::Contact;
-use crate::contact::iwan::Iwan;
+use crate::contact::described::iwan::Iwan;
 use crate::error::{Status, try_room};
 use crate::model::Model;
 

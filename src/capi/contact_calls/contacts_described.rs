@@ -8,7 +8,7 @@ use crate::capi::crossing::indices::{GROUND, index};
 use crate::capi::crossing::versioned_struct::{VersionedStruct, check_out, fill_out};
 use crate::capi::structures::model::hbvib_model;
 use crate::capi::version_and_errors::hbvib_status;
-use crate::contact::constants::Constant;
+use crate::contact::forms::constants::Constant;
 use crate::error::Status;
 use crate::model::Model;
 

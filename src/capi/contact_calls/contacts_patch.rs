@@ -8,7 +8,7 @@ use crate::capi::crossing::indices::{check_id, side, with_named_argument};
 use crate::capi::crossing::versioned_struct::load;
 use crate::capi::structures::model::hbvib_model;
 use crate::capi::version_and_errors::hbvib_status;
-use crate::contact::patch::Patch;
+use crate::contact::described::patch::Patch;
 use crate::error::{Result, Status, fail, try_push};
 use crate::model::Model;
 

@@ -13,7 +13,7 @@ use crate::capi::solving::solve_hooks::{hbvib_hooks, load_hooks, with_interrupt}
 use crate::capi::structures::matrices::{hbvib_matrix, matrix_view};
 use crate::capi::structures::model::hbvib_model;
 use crate::capi::version_and_errors::hbvib_status;
-use crate::contact::constants::Constant;
+use crate::contact::forms::constants::Constant;
 use crate::error::{Result, Status, fail, try_push};
 use crate::model::Model;
 use crate::model::matrices::structure::MatrixKind;

@@ -10,7 +10,7 @@ use crate::capi::crossing::versioned_struct::{VersionedStruct, check_out, fill_o
 use crate::capi::solving::solve::hbvib_branch;
 use crate::capi::solving::solve_hooks::{hbvib_hooks, load_hooks, with_interrupt};
 use crate::capi::version_and_errors::hbvib_status;
-use crate::contact::contact_state::State;
+use crate::contact::forms::contact_state::State;
 use crate::error::{Status, fail};
 
 /// State of a contact at one time.

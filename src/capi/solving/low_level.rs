@@ -12,7 +12,7 @@ use crate::capi::solving::solve_options::{harmonics_and_samples, hbvib_solver_op
 use crate::capi::structures::model::hbvib_model;
 use crate::capi::version_and_errors::hbvib_status;
 use crate::contact::ContactKind;
-use crate::contact::constants::Constant;
+use crate::contact::forms::constants::Constant;
 use crate::error::{Error, Result, Status, fail};
 use crate::model::Model;
 use core::ffi::{c_char, c_uchar};

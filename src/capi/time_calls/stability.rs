@@ -12,7 +12,7 @@ use crate::capi::solving::solve::hbvib_branch;
 use crate::capi::solving::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
 use crate::capi::structures::model::hbvib_model;
 use crate::capi::version_and_errors::hbvib_status;
-use crate::contact::time_piece::Grazing;
+use crate::contact::forms::time_piece::Grazing;
 use crate::error::{Result, fail};
 use crate::options::{FloquetOptions, Waves};
 use crate::results::MultiplierClass;

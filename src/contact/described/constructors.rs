@@ -1,6 +1,6 @@
 //! Contacts of each law by their degrees of freedom and constants.
 
-use crate::contact::description::Contact;
+use crate::contact::described::description::Contact;
 use crate::contact::laws::{ContactKind, Cubic, Friction2d, Friction3d, Jenkins, Regularised, Unilateral};
 
 impl Contact {

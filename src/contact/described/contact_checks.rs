@@ -1,8 +1,8 @@
 //! Checks of the description of a contact: constants in their ranges, degrees of freedom only along directions in which the
 //! law acts.
 
-use crate::contact::constants::Constant;
-use crate::contact::description::Contact;
+use crate::contact::described::description::Contact;
+use crate::contact::forms::constants::Constant;
 use crate::error::{Result, fail};
 
 impl Contact {

@@ -4,12 +4,12 @@
 //! caller's units; the law answers for its role in the model, and [`Contact::law`] makes of it the [`Law`] that a
 //! solver evaluates, in the solver's units.
 
-use crate::contact::constants::{Constant, Role, clearance, load, slip_limit};
-use crate::contact::force_derivative::ForceDerivative;
-use crate::contact::law::{ContactLaw, Law, LawInTime};
+use crate::contact::described::relative_motion::{Direction, Frame};
+use crate::contact::described::rigid_point::RigidPoint;
+use crate::contact::forms::constants::{Constant, Role, clearance, load, slip_limit};
+use crate::contact::forms::force_derivative::ForceDerivative;
+use crate::contact::forms::law::{ContactLaw, Law, LawInTime};
 use crate::contact::laws::ContactKind;
-use crate::contact::relative_motion::{Direction, Frame};
-use crate::contact::rigid_point::RigidPoint;
 use crate::error::{Result, fail};
 use std::sync::Arc;
 

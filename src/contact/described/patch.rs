@@ -1,8 +1,8 @@
 //! A contact patch: many node pairs between two surfaces, each with its share of the area.
 
-use crate::contact::constants::Constant;
-use crate::contact::description::Contact;
-use crate::contact::relative_motion::Frame;
+use crate::contact::described::description::Contact;
+use crate::contact::described::relative_motion::Frame;
+use crate::contact::forms::constants::Constant;
 use crate::error::{Result, fail, try_push};
 
 /// Node pairs of two surfaces. All arrays have one entry per pair; `None` takes the value of `law`.

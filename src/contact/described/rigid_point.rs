@@ -2,7 +2,7 @@
 //!
 //! The point at the arm r from the centre of mass moves by u + θ × r, and along d by d·u + (r × d)·θ.
 
-use crate::contact::relative_motion::{Frame, Side, TERMS_B};
+use crate::contact::described::relative_motion::{Frame, Side, TERMS_B};
 
 /// Point of a rigid body on side a of a contact with a frame, whose `dof_a` are the motions of the centre of mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,11 +1,11 @@
 //! A contact as bytes.
 
 use crate::byte_stream::{ByteReader, ByteWriter};
-use crate::contact::constants::Constant;
-use crate::contact::description::Contact;
+use crate::contact::described::description::Contact;
+use crate::contact::described::relative_motion::Frame;
+use crate::contact::described::rigid_point::RigidPoint;
+use crate::contact::forms::constants::Constant;
 use crate::contact::laws::ContactKind;
-use crate::contact::relative_motion::Frame;
-use crate::contact::rigid_point::RigidPoint;
 use crate::error::{Result, try_push};
 
 /// Largest deviation of the products of the axes of a frame from those of unit vectors.

@@ -100,21 +100,21 @@ pub trait LawData {
 /// Implements [`LawData`] for a law whose data are constants with names: its number in saved models, and the field of each constant.
 macro_rules! named_constants {
     ($law:ident, $number:literal, $($constant:ident $(($k:literal))? => $field:ident $([$i:literal])?),+ $(,)?) => {
-        impl $crate::contact::constants::LawData for $law {
+        impl $crate::contact::forms::constants::LawData for $law {
             fn number(&self) -> u8 {
                 $number
             }
 
-            fn constant(&self, constant: $crate::contact::constants::Constant) -> Option<f64> {
+            fn constant(&self, constant: $crate::contact::forms::constants::Constant) -> Option<f64> {
                 match constant {
-                    $($crate::contact::constants::Constant::$constant $(($k))? => Some(self.$field $([$i])?),)+
+                    $($crate::contact::forms::constants::Constant::$constant $(($k))? => Some(self.$field $([$i])?),)+
                     _ => None,
                 }
             }
 
-            fn constant_mut(&mut self, constant: $crate::contact::constants::Constant) -> Option<&mut f64> {
+            fn constant_mut(&mut self, constant: $crate::contact::forms::constants::Constant) -> Option<&mut f64> {
                 match constant {
-                    $($crate::contact::constants::Constant::$constant $(($k))? => Some(&mut self.$field $([$i])?),)+
+                    $($crate::contact::forms::constants::Constant::$constant $(($k))? => Some(&mut self.$field $([$i])?),)+
                     _ => None,
                 }
             }

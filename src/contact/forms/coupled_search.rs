@@ -1,7 +1,7 @@
 //! Memory in which a law under a varying normal load searches its pieces: turning points of the normal
 //! motion and of the two signals that bound the slider.
 
-use crate::contact::piece::{CoupledPiece, Piece};
+use crate::contact::forms::piece::{CoupledPiece, Piece};
 use crate::error::{Error, Result, try_vec};
 use crate::fourier::{Extremum, HarmonicSet, TurningPoints};
 use crate::interrupt::Interrupt;

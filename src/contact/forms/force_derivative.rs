@@ -5,7 +5,7 @@
 //! of products of its Jacobian J with the motion itself, and of the part of the force that the Jacobian does not give.
 //! It has the exact events of that evaluation, and needs no other.
 
-use crate::contact::constants::Constant;
+use crate::contact::forms::constants::Constant;
 
 /// Factors of the parts of an evaluation whose sum is the derivative of a force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

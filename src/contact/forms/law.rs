@@ -6,17 +6,17 @@
 //! [`Form`] and lives in [`crate::aft`], which knows no law by name. In time a law is an [`EventLaw`], linear
 //! between events, or smooth.
 
-use crate::contact::constants::{Constant, Role};
-use crate::contact::contact_state::State;
-use crate::contact::coupled_search::CoupledSearch;
-use crate::contact::force_derivative::ForceDerivative;
-use crate::contact::linearisation::Range;
-use crate::contact::march::March;
-use crate::contact::onset::Onset;
-use crate::contact::piece::{CoupledPiece, Piece};
-use crate::contact::plane_path::PlanePath;
-use crate::contact::samples::Samples;
-use crate::contact::time_piece::{Instant, Mode, TimePiece, Zeros};
+use crate::contact::forms::constants::{Constant, Role};
+use crate::contact::forms::contact_state::State;
+use crate::contact::forms::coupled_search::CoupledSearch;
+use crate::contact::forms::force_derivative::ForceDerivative;
+use crate::contact::forms::linearisation::Range;
+use crate::contact::forms::march::March;
+use crate::contact::forms::onset::Onset;
+use crate::contact::forms::piece::{CoupledPiece, Piece};
+use crate::contact::forms::plane_path::PlanePath;
+use crate::contact::forms::samples::Samples;
+use crate::contact::forms::time_piece::{Instant, Mode, TimePiece, Zeros};
 use crate::error::Result;
 use crate::fourier::{Extremum, HarmonicSet};
 use crate::interrupt::Interrupt;

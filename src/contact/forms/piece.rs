@@ -1,6 +1,6 @@
 //! Pieces: intervals of the period on which a contact force is affine in the relative motions.
 
-use crate::contact::contact_state::State;
+use crate::contact::forms::contact_state::State;
 
 /// An interval on which the force is f(τ) = slope·(x(τ) − x(anchor)) + offset.
 ///

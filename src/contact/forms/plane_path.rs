@@ -2,10 +2,10 @@
 //!
 //! Tangential motions enter as the force of the spring without slider, u = kt·x, and the normal motion as the limit R = μN, so that
 //! a path needs no other constants. In stick the force is affine in the motion. In slip it has the size R and turns by a differential
-//! equation; a piece of slip holds its direction at the nodes of a collocation, [`crate::contact::radau`].
+//! equation; a piece of slip holds its direction at the nodes of a collocation, [`crate::contact::forms::radau`].
 
-use crate::contact::contact_state::State;
-use crate::contact::radau::{RADAU_STAGES, RadauTables};
+use crate::contact::forms::contact_state::State;
+use crate::contact::forms::radau::{RADAU_STAGES, RadauTables};
 use crate::error::{Error, Result, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::linalg::factors::lu::Lu;

@@ -8,11 +8,11 @@
 //! k + ¾·c·A². An oscillator on such a spring is Duffing's; see Krack & Gross, Harmonic Balance
 //! for Nonlinear Vibration Problems (2019), doi:10.1007/978-3-030-14023-6.
 
-use crate::contact::constants::{Constant, Role, named_constants};
-use crate::contact::force_derivative::{Combination, ForceDerivative};
-use crate::contact::law::{ContactLaw, Form, Law, LawInTime, Spectral};
+use crate::contact::forms::constants::{Constant, Role, named_constants};
+use crate::contact::forms::force_derivative::{Combination, ForceDerivative};
+use crate::contact::forms::law::{ContactLaw, Form, Law, LawInTime, Spectral};
+use crate::contact::forms::linearisation::{LINEARISATION_SMALL, Range};
 use crate::contact::laws::polynomial::Polynomial;
-use crate::contact::linearisation::{LINEARISATION_SMALL, Range};
 use crate::error::{Result, fail};
 use crate::fourier::HarmonicSet;
 use num_complex::Complex64;

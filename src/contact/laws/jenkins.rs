@@ -8,16 +8,16 @@
 //! exact multi-harmonic friction element of Petrov & Ewins, J. Turbomach. 125 (2003) 364–371,
 //! doi:10.1115/1.1539868.
 
-use crate::contact::constants::{Constant, Role, named_constants, needs_stiffness, slip_limit};
-use crate::contact::contact_state::State;
-use crate::contact::force_derivative::{Combination, ForceDerivative};
-use crate::contact::law::{ContactLaw, Form, Law, LawInTime, PiecewiseLinear};
+use crate::contact::forms::constants::{Constant, Role, named_constants, needs_stiffness, slip_limit};
+use crate::contact::forms::contact_state::State;
+use crate::contact::forms::force_derivative::{Combination, ForceDerivative};
+use crate::contact::forms::law::{ContactLaw, Form, Law, LawInTime, PiecewiseLinear};
+use crate::contact::forms::linearisation::Range;
+use crate::contact::forms::onset::{Onset, slider_in_line};
+use crate::contact::forms::piece::Piece;
 use crate::contact::laws::friction_2d::friction_2d_events::Slider;
 use crate::contact::laws::saturated::Saturated;
 use crate::contact::laws::sliding_mass::SlidingMass;
-use crate::contact::linearisation::Range;
-use crate::contact::onset::{Onset, slider_in_line};
-use crate::contact::piece::Piece;
 use crate::error::{Result, fail};
 use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, VALUES_OF_A_CROSSING, crossing};

@@ -27,8 +27,8 @@ pub use unilateral::Unilateral;
 pub use user_law::{Call, States, User, UserForce};
 
 use crate::byte_stream::{ByteReader, ByteWriter};
-use crate::contact::constants::LawData;
-use crate::contact::law::ContactLaw;
+use crate::contact::forms::constants::LawData;
+use crate::contact::forms::law::ContactLaw;
 use crate::error::Result;
 
 /// The kind of a contact: its law with its data.

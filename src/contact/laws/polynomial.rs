@@ -9,11 +9,11 @@
 mod polynomial_terms;
 
 use crate::byte_stream::{ByteReader, ByteWriter};
-use crate::contact::constants::LawData;
-use crate::contact::law::{ContactLaw, Form, Law, LawInTime, Memoryless};
+use crate::contact::forms::constants::LawData;
+use crate::contact::forms::law::{ContactLaw, Form, Law, LawInTime, Memoryless};
+use crate::contact::forms::linearisation::{LINEARISATION_SMALL, Range};
+use crate::contact::forms::samples::Samples;
 use crate::contact::laws::polynomial::polynomial_terms::{Collector, Factor, Term, Terms, check, power};
-use crate::contact::linearisation::{LINEARISATION_SMALL, Range};
-use crate::contact::samples::Samples;
 use crate::error::{Result, fail, try_push};
 use std::sync::Arc;
 

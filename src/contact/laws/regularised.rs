@@ -5,11 +5,11 @@
 //! of tanh from the real axis of τ; N samples leave an error of about e^{−(N−H)δ}. The number of
 //! samples that suffices hence depends on V/v₀, which is known with the solution only.
 
-use crate::contact::constants::{Constant, Role, named_constants, slip_limit};
-use crate::contact::force_derivative::{Combination, ForceDerivative};
-use crate::contact::law::{ContactLaw, Form, Law, LawInTime, Memoryless};
-use crate::contact::linearisation::{LINEARISATION_SMALL, Range};
-use crate::contact::samples::{Samples, automatic_samples};
+use crate::contact::forms::constants::{Constant, Role, named_constants, slip_limit};
+use crate::contact::forms::force_derivative::{Combination, ForceDerivative};
+use crate::contact::forms::law::{ContactLaw, Form, Law, LawInTime, Memoryless};
+use crate::contact::forms::linearisation::{LINEARISATION_SMALL, Range};
+use crate::contact::forms::samples::{Samples, automatic_samples};
 use crate::error::{Result, fail};
 use std::sync::Arc;
 

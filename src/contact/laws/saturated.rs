@@ -9,10 +9,10 @@
 //! doi:10.1115/DETC2003/VIB-48397, who use it at the times of a sampled period. [`crate::condense::blocks::exchange`] has the
 //! equations of x.
 
-use crate::contact::contact_state::State;
-use crate::contact::law::{Form, Law, PiecewiseLinear};
-use crate::contact::linearisation::Range;
-use crate::contact::piece::Piece;
+use crate::contact::forms::contact_state::State;
+use crate::contact::forms::law::{Form, Law, PiecewiseLinear};
+use crate::contact::forms::linearisation::Range;
+use crate::contact::forms::piece::Piece;
 use crate::error::Result;
 use crate::fourier::{Extremum, HarmonicSet, VALUES_OF_A_CROSSING, crossing};
 use crate::interrupt::Interrupt;
@@ -141,7 +141,7 @@ impl PiecewiseLinear for Saturated {
 #[cfg(test)]
 mod tests {
     use super::Saturated;
-    use crate::contact::law::PiecewiseLinear;
+    use crate::contact::forms::law::PiecewiseLinear;
     use crate::fourier::{HarmonicSet, TurningPoints, jet};
     use crate::interrupt::Interrupt;
     use std::f64::consts::{PI, TAU};

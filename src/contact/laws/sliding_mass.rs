@@ -23,10 +23,10 @@
 //! limit; there the momentum is soon used up, and has no effect in the end, so that δ may be smaller the less it counts. It vanishes with
 //! r, which makes the force continuous.
 
-use crate::contact::contact_state::State;
-use crate::contact::law::{Form, Law, PiecewiseLinear, SlidingEnds};
-use crate::contact::linearisation::Range;
-use crate::contact::piece::Piece;
+use crate::contact::forms::contact_state::State;
+use crate::contact::forms::law::{Form, Law, PiecewiseLinear, SlidingEnds};
+use crate::contact::forms::linearisation::Range;
+use crate::contact::forms::piece::Piece;
 use crate::error::{Result, fail};
 use crate::fourier::{Extremum, HarmonicSet, VALUES_OF_A_CROSSING};
 use crate::interrupt::Interrupt;

@@ -6,13 +6,13 @@
 //! are for a unilateral spring, the table of two lines.
 
 use crate::byte_stream::{ByteReader, ByteWriter};
-use crate::contact::constants::LawData;
-use crate::contact::contact_state::State;
-use crate::contact::law::{ContactLaw, EventLaw, Form, Law, LawInTime, PiecewiseLinear};
-use crate::contact::linearisation::Range;
-use crate::contact::onset::Onset;
-use crate::contact::piece::Piece;
-use crate::contact::time_piece::{Instant, Mode, TimePiece, Zeros, margin_of_level};
+use crate::contact::forms::constants::LawData;
+use crate::contact::forms::contact_state::State;
+use crate::contact::forms::law::{ContactLaw, EventLaw, Form, Law, LawInTime, PiecewiseLinear};
+use crate::contact::forms::linearisation::Range;
+use crate::contact::forms::onset::Onset;
+use crate::contact::forms::piece::Piece;
+use crate::contact::forms::time_piece::{Instant, Mode, TimePiece, Zeros, margin_of_level};
 use crate::error::{Result, fail, try_push};
 use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, VALUES_OF_A_CROSSING, crossing};

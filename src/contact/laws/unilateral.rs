@@ -6,14 +6,14 @@
 //! stiffness spectrum, F = k·T(S)·X + k·g·ĝ (Petrov & Ewins 2004, doi:10.1115/1.1644557, treat it
 //! as the normal part of a friction contact).
 
-use crate::contact::constants::{Constant, Role, clearance, load, named_constants, needs_stiffness};
-use crate::contact::contact_state::State;
-use crate::contact::force_derivative::ForceDerivative;
-use crate::contact::law::{ContactLaw, EventLaw, Form, Law, LawInTime, PiecewiseLinear};
-use crate::contact::linearisation::Range;
-use crate::contact::onset::Onset;
-use crate::contact::piece::Piece;
-use crate::contact::time_piece::{Instant, Mode, TimePiece, Zeros, margin_of_level};
+use crate::contact::forms::constants::{Constant, Role, clearance, load, named_constants, needs_stiffness};
+use crate::contact::forms::contact_state::State;
+use crate::contact::forms::force_derivative::ForceDerivative;
+use crate::contact::forms::law::{ContactLaw, EventLaw, Form, Law, LawInTime, PiecewiseLinear};
+use crate::contact::forms::linearisation::Range;
+use crate::contact::forms::onset::Onset;
+use crate::contact::forms::piece::Piece;
+use crate::contact::forms::time_piece::{Instant, Mode, TimePiece, Zeros, margin_of_level};
 use crate::error::Result;
 use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, VALUES_OF_A_CROSSING, crossing};

@@ -10,10 +10,10 @@
 mod user_states;
 
 use crate::byte_stream::ByteWriter;
-use crate::contact::constants::LawData;
-use crate::contact::law::{ContactLaw, Form, Law, LawInTime, Memoryless};
-use crate::contact::linearisation::Range;
-use crate::contact::samples::{Samples, automatic_samples};
+use crate::contact::forms::constants::LawData;
+use crate::contact::forms::law::{ContactLaw, Form, Law, LawInTime, Memoryless};
+use crate::contact::forms::linearisation::Range;
+use crate::contact::forms::samples::{Samples, automatic_samples};
 use crate::error::{Error, Result, Status, fail};
 use std::fmt;
 use std::sync::Arc;

@@ -1,7 +1,7 @@
 //! Rotation of a model: its speed, the loads of its contacts that follow from it, unbalance, and the model at one
 //! frequency.
 
-use crate::contact::constants::Constant;
+use crate::contact::forms::constants::Constant;
 use crate::error::{Result, fail, try_push};
 use crate::model::Model;
 pub use crate::model::matrices::speed::{Speed, SpeedLoad};

@@ -4,7 +4,7 @@
 //! are turned, and its motion is turned into the axes of this one.
 
 use crate::contact::Contact;
-use crate::contact::relative_motion::{Direction, Side, TERMS_A, TERMS_B};
+use crate::contact::described::relative_motion::{Direction, Side, TERMS_A, TERMS_B};
 use crate::error::{Result, fail};
 use crate::model::matrices::sector_faces::Faces;
 use crate::model::matrices::spring::{Row, Spring};

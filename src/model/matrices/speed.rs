@@ -1,7 +1,7 @@
 //! The speed of rotation Ω, fixed or tied to the frequency of the response, and normal loads N₀ + cΩ².
 
 use crate::contact::Contact;
-use crate::contact::constants::Constant;
+use crate::contact::forms::constants::Constant;
 
 /// Speed of rotation Ω in rad per time unit.
 #[derive(Clone, Copy, Debug, PartialEq)]

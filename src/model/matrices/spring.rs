@@ -1,6 +1,6 @@
 //! Linear springs between degrees of freedom, and the rows of relative motions.
 
-use crate::contact::relative_motion::{TERMS_A, TERMS_B};
+use crate::contact::described::relative_motion::{TERMS_A, TERMS_B};
 use num_complex::Complex64;
 
 /// A linear spring. Rayleigh damping excludes it.

@@ -1,6 +1,6 @@
 //! Contents of a model, read back: blocks of its matrices, normal loads as they were given.
 
-use crate::contact::constants::Constant;
+use crate::contact::forms::constants::Constant;
 use crate::error::{Result, fail};
 use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
 use crate::model::Model;

@@ -8,7 +8,7 @@
 
 use crate::byte_stream::{ByteReader, ByteWriter, checksum};
 use crate::contact::Contact;
-use crate::contact::constants::Constant;
+use crate::contact::forms::constants::Constant;
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::model::excitation::{Excitation, Force};
 use crate::model::few_motions::reduced_wave::KeptWaves;

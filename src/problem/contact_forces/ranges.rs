@@ -1,7 +1,7 @@
 //! Properties of the laws at other motions and other samples: their linear ranges, and their sampling error.
 
-use crate::contact::linearisation::Range;
-use crate::contact::onset::Onset;
+use crate::contact::forms::linearisation::Range;
+use crate::contact::forms::onset::Onset;
 use crate::error::{Error, Result, try_push};
 use crate::problem::contact_forces::{ContactForces, gather_scaled};
 use num_complex::Complex64;

@@ -19,7 +19,7 @@ mod plane_motion;
 pub mod two_motions;
 
 use crate::aft::{Evaluation, Evaluator};
-use crate::contact::law::{Form, Law};
+use crate::contact::forms::law::{Form, Law};
 use crate::error::{Result, try_push};
 use crate::fourier::{HarmonicSet, TurningPoints};
 use crate::interrupt::Interrupt;

@@ -1,7 +1,7 @@
 //! Motion against time at a stored point, and motion, force and state of its contacts.
 
 use crate::contact::Contact;
-use crate::contact::contact_state::State;
+use crate::contact::forms::contact_state::State;
 use crate::error::{Result, fail, try_extend, try_room, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::fourier::jet;

@@ -1,6 +1,6 @@
 //! Stability of one motion, from its Floquet multipliers.
 
-use crate::contact::time_piece::Grazing;
+use crate::contact::forms::time_piece::Grazing;
 use crate::error::Status;
 use crate::results::verdicts::floquet_multiplier::{Multiplier, MultiplierClass};
 use crate::results::verdicts::verdict::VERDICT_UNIT;

@@ -1,6 +1,6 @@
 //! Further starts of a fit: towards sliding, towards sticking, and points within the bounds.
 
-use crate::contact::constants::Constant;
+use crate::contact::forms::constants::Constant;
 use crate::error::{Result, try_copy, try_push};
 use crate::sensitivity::Parameter;
 use crate::studies::fit::fit_search::{Search, State};

@@ -1,6 +1,6 @@
 //! Whether the data tell every unknown, in words.
 
-use crate::contact::constants::Constant;
+use crate::contact::forms::constants::Constant;
 use crate::error::{Result, fail, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::hermitian::eigen;

@@ -6,8 +6,8 @@
 //! steady force at each time is the line between both. The fundamental of the difference, projected on the mode, is the defect of the
 //! slow flow. It is of the first order in the rate, and errors of its average over a turn are of the second.
 
-use crate::contact::law::{EventLaw, SliderLaw};
-use crate::contact::time_piece::{Instant, Mode};
+use crate::contact::forms::law::{EventLaw, SliderLaw};
+use crate::contact::forms::time_piece::{Instant, Mode};
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::studies::run_up::chirp::Chirp;

@@ -1,6 +1,6 @@
 //! Checks of the options of a life for a model.
 
-use crate::contact::constants::Constant;
+use crate::contact::forms::constants::Constant;
 use crate::error::{Result, fail, try_copy};
 use crate::model::Model;
 use crate::options::{LifeFollow, LifeOptions, MOST_WORN};

@@ -2,7 +2,7 @@
 
 use crate::analysis::forced_response::forced_response;
 use crate::at_a_point::sensitivity_analysis::{Quantity, sensitivity_with};
-use crate::contact::constants::Constant;
+use crate::contact::forms::constants::Constant;
 use crate::error::{Error, Result, Status, fail, try_push, try_vec};
 use crate::hooks::Hooks;
 use crate::interrupt::Interrupt;

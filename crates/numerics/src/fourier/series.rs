@@ -79,7 +79,7 @@ fn at_turn(set: &HarmonicSet, packed: &[f64], mut turn: Complex64) -> Jet {
 const SERIES_GROUP: usize = 8;
 
 /// Harmonics from which that takes less time.
-/// Kind: tuned; measured on: one slider with 5 to 64 odd harmonics.
+/// Kind: tuned; measured on: one slider with 5 and with 64 odd harmonics.
 const GROUPED_FROM: usize = 16;
 
 /// Sums over whole groups of harmonics, and where the pairs that are left begin.

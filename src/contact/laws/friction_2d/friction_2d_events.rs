@@ -10,8 +10,8 @@
 //! motion, δw = δx + a·δy with a = σ·μkn/kt and a = 0. A closing at the time r leaves it at w = x(r); with y(r) given
 //! the time moves by δr = −δy/y′, so that a = −x′/y′ (the rate of w jumps there, unlike that of the motion).
 
-use crate::contact::law::{EventLaw, SliderLaw};
-use crate::contact::time_piece::{Instant, Mode, TimePiece, Zeros};
+use crate::contact::forms::law::{EventLaw, SliderLaw};
+use crate::contact::forms::time_piece::{Instant, Mode, TimePiece, Zeros};
 
 /// Constants of a slider.
 #[derive(Clone, Copy, Debug)]

@@ -5,9 +5,9 @@
 //! towards a slider at rest is beyond it at the end of the interval, slip begins at the one time
 //! that it passes; and slip ends where the bound that drags the slider turns back.
 
-use crate::contact::contact_state::State;
-use crate::contact::coupled_search::Bound;
-use crate::contact::piece::CoupledPiece;
+use crate::contact::forms::contact_state::State;
+use crate::contact::forms::coupled_search::Bound;
+use crate::contact::forms::piece::CoupledPiece;
 use crate::error::Result;
 use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, VALUES_OF_A_CROSSING, crossing, jet};

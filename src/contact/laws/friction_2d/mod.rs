@@ -23,16 +23,16 @@
 pub(crate) mod friction_2d_events;
 mod friction_2d_slider;
 
-use crate::contact::constants::{Constant, LawData, Role, clearance, load, named_constants, needs_stiffness};
-use crate::contact::coupled_search::{Bound, CoupledSearch, find};
-use crate::contact::force_derivative::{Combination, ForceDerivative};
-use crate::contact::law::{ContactLaw, Form, Law, LawInTime, PiecewiseLinear, VaryingNormalLoad};
+use crate::contact::forms::constants::{Constant, LawData, Role, clearance, load, named_constants, needs_stiffness};
+use crate::contact::forms::coupled_search::{Bound, CoupledSearch, find};
+use crate::contact::forms::force_derivative::{Combination, ForceDerivative};
+use crate::contact::forms::law::{ContactLaw, Form, Law, LawInTime, PiecewiseLinear, VaryingNormalLoad};
+use crate::contact::forms::linearisation::Range;
+use crate::contact::forms::onset::{Onset, slider_in_line};
+use crate::contact::forms::piece::{CoupledPiece, Piece};
 use crate::contact::laws::friction_2d::friction_2d_events::Slider;
 use crate::contact::laws::friction_2d::friction_2d_slider::{Phase, Play, Walk};
 use crate::contact::laws::unilateral::ScaledUnilateral;
-use crate::contact::linearisation::Range;
-use crate::contact::onset::{Onset, slider_in_line};
-use crate::contact::piece::{CoupledPiece, Piece};
 use crate::error::{Result, fail};
 use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, jet};

@@ -8,11 +8,11 @@
 //! then shorten towards the opening. At a closing the force starts from zero: in stick where |u′| < R′, else along u′, the one direction
 //! whose turn stays finite.
 
+use crate::contact::forms::plane_path::{CONTEXT, PlaneForce, PlaneInstant, PlanePath, PlanePiece, SlipPanel};
+use crate::contact::forms::radau::{RADAU_POINTS, RADAU_STAGES};
 use crate::contact::laws::friction_3d::friction_3d_slip::{
     FRICTION_3D_SLIP_ROUNDING, Solved, along_motion, first_zero, solve, turn_rate,
 };
-use crate::contact::plane_path::{CONTEXT, PlaneForce, PlaneInstant, PlanePath, PlanePiece, SlipPanel};
-use crate::contact::radau::{RADAU_POINTS, RADAU_STAGES};
 use crate::error::{Error, Result, Status, try_push};
 use crate::interrupt::Interrupt;
 use std::f64::consts::TAU;

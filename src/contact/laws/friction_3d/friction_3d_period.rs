@@ -4,11 +4,13 @@
 //! the circle of the limit at all times, see friction_3d_stuck.rs. Otherwise it slips, which brings all forces at the start closer to the
 //! one that returns, found by Newton's method.
 
+use crate::contact::forms::piece::Piece;
+use crate::contact::forms::plane_path::{
+    CONTEXT, Drift, Hold, PlaneForce, PlaneInstant, PlanePath, PlanePiece, Repetition,
+};
+use crate::contact::forms::radau::{RADAU_POINTS, RADAU_STAGES};
 use crate::contact::laws::friction_3d::friction_3d_path::{Phase, Walk};
 use crate::contact::laws::friction_3d::friction_3d_stuck::{Disc, StuckSlider, stuck_slider};
-use crate::contact::piece::Piece;
-use crate::contact::plane_path::{CONTEXT, Drift, Hold, PlaneForce, PlaneInstant, PlanePath, PlanePiece, Repetition};
-use crate::contact::radau::{RADAU_POINTS, RADAU_STAGES};
 use crate::error::{Error, Result, Status, try_push};
 use crate::fourier::{jet, safe_newton};
 use crate::interrupt::Interrupt;

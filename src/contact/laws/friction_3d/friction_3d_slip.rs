@@ -3,8 +3,8 @@
 //! In slip the force R e(θ) turns with the motion u = kt·x at the rate R θ′ = n·u′, n a quarter turn left of e. Slip lasts while
 //! kt·γ = e·u′ − R′ ≥ 0.
 
-use crate::contact::plane_path::{PlaneInstant, SlipPanel};
-use crate::contact::radau::{RADAU_POINTS, RADAU_STAGES, RadauTables};
+use crate::contact::forms::plane_path::{PlaneInstant, SlipPanel};
+use crate::contact::forms::radau::{RADAU_POINTS, RADAU_STAGES, RadauTables};
 use crate::fourier::safe_newton;
 use crate::interrupt::Interrupt;
 use crate::linalg::factors::lu::Lu;

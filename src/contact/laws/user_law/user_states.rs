@@ -3,10 +3,10 @@
 //! States have the caller's units. Motions x = L·x̂ and forces f = L·f̂ change their unit by the
 //! same length L, so that ∂f/∂u and ∂f/∂v stay, ∂z/∂û = L·∂z/∂u, and ∂f̂/∂z = ∂f/∂z / L.
 
-use crate::contact::law::Hysteretic;
+use crate::contact::forms::law::Hysteretic;
+use crate::contact::forms::march::March;
+use crate::contact::forms::samples::automatic_samples;
 use crate::contact::laws::user_law::{Call, States, User, check_block, check_filled};
-use crate::contact::march::March;
-use crate::contact::samples::automatic_samples;
 use crate::error::Result;
 
 /// Finer sampling than a law without memory gets: steps of states are of second order at best.

@@ -1,7 +1,7 @@
 //! A contact followed over the period, a slice of times after the other, so that memory does not grow with their number.
 
-use crate::contact::contact_state::State;
-use crate::contact::law::{Form, Law};
+use crate::contact::forms::contact_state::State;
+use crate::contact::forms::law::{Form, Law};
 use crate::error::{Result, boxed, try_room};
 use crate::fourier::jet;
 use crate::interrupt::Interrupt;

@@ -3,8 +3,8 @@
 
 use crate::aft::hysteretic::HystereticEvaluator;
 use crate::condense::blocks::memory_limit::{beyond, mega};
-use crate::contact::law::{Hysteretic, Memoryless};
-use crate::contact::samples::Samples;
+use crate::contact::forms::law::{Hysteretic, Memoryless};
+use crate::contact::forms::samples::Samples;
 use crate::error::{Result, try_copy, try_vec};
 use crate::fourier::jet;
 use crate::interrupt::Interrupt;

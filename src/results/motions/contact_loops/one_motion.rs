@@ -3,9 +3,9 @@
 //! A slider stores f²/2k, the same at the begin and the end of every stick between slips, so that its
 //! work per cycle is that of the slips: Σ f·Δx, a sum of positive terms.
 
-use crate::contact::contact_state::State;
-use crate::contact::law::{Form, Law};
-use crate::contact::piece::Piece;
+use crate::contact::forms::contact_state::State;
+use crate::contact::forms::law::{Form, Law};
+use crate::contact::forms::piece::Piece;
 use crate::error::{Error, Result, try_push};
 use crate::fourier::HarmonicSet;
 use crate::fourier::{TurningPoints, jet};

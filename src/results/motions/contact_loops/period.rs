@@ -1,6 +1,6 @@
 //! The prescribed motion of a contact over the period, and the results under it.
 
-use crate::contact::contact_state::State;
+use crate::contact::forms::contact_state::State;
 use crate::error::{Error, Result};
 use crate::fourier::{Extremum, HarmonicSet};
 use std::f64::consts::TAU;

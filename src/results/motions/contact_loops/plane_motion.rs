@@ -3,8 +3,8 @@
 
 use crate::aft::Evaluation;
 use crate::aft::plane_friction::PlaneFrictionEvaluator;
-use crate::contact::contact_state::State;
-use crate::contact::law::PlaneFriction;
+use crate::contact::forms::contact_state::State;
+use crate::contact::forms::law::PlaneFriction;
 use crate::error::Result;
 use crate::interrupt::Interrupt;
 use crate::results::motions::contact_loops::period::PeriodicMotion;

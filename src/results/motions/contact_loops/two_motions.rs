@@ -1,10 +1,10 @@
 //! Friction in one direction under a normal load that varies, exactly: its tangential force from event to
 //! event, its normal force from the normal motion at the time.
 
-use crate::contact::contact_state::State;
-use crate::contact::coupled_search::{CoupledSearch, piece_lists};
-use crate::contact::law::VaryingNormalLoad;
-use crate::contact::piece::CoupledPiece;
+use crate::contact::forms::contact_state::State;
+use crate::contact::forms::coupled_search::{CoupledSearch, piece_lists};
+use crate::contact::forms::law::VaryingNormalLoad;
+use crate::contact::forms::piece::CoupledPiece;
 use crate::error::{Result, try_push};
 use crate::fourier::HarmonicSet;
 use crate::fourier::jet;
