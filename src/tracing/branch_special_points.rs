@@ -10,6 +10,8 @@ use crate::tracing::branch_tracer::BranchTracer;
 
 impl BranchTracer<'_> {
     /// Locates folds, other bifurcations, peaks, limit cycles and requested parameter values between two neighbours.
+    // Out of line: its points do not lie on the stack under a step.
+    #[inline(never)]
     pub(super) fn locate_special(
         &mut self,
         analysis: &mut dyn Traceable,

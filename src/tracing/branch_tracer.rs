@@ -338,6 +338,8 @@ impl<'a> BranchTracer<'a> {
     }
 
     /// Whether a point found with other harmonics lies before the point recorded last, or outside the range.
+    // Out of line: its points do not lie on the stack under a step.
+    #[inline(never)]
     fn is_reversed_or_outside(
         &self,
         analysis: &dyn Traceable,

@@ -62,6 +62,8 @@ const CONTEXT: &str = "the linear response";
 impl BranchTracer<'_> {
     /// Follows the branch from the point recorded last, at which every contact is linear. `None` if the analysis has
     /// no linear response.
+    // Out of line: its points do not lie on the stack under a step.
+    #[inline(never)]
     pub(super) fn follow_linear(
         &mut self,
         analysis: &mut dyn Traceable,
