@@ -61,7 +61,7 @@ pub struct HarmonicBalance<'a> {
     /// Contact forces, in a box as other parts of problems are: calls that pass them by value then need little of a
     /// small stack.
     pub(super) forces: Box<ContactForces<'a>>,
-    pub(super) tables: FrequencyCache,
+    pub(super) tables: Box<FrequencyCache>,
     /// Index of the observed harmonic among the carried ones.
     observed: usize,
     given: Option<Vec<f64>>,
@@ -127,7 +127,7 @@ impl<'a> HarmonicBalance<'a> {
         Ok(Self {
             condensed,
             forces: Box::new(ContactForces::new(condensed, samples, interrupt)?),
-            tables: FrequencyCache::new(condensed, response, range, interrupt)?,
+            tables: boxed(|| FrequencyCache::new(condensed, response, range, interrupt))?,
             observed: set.watched(),
             given,
             loaded_at_rest,
@@ -295,7 +295,7 @@ impl<'a> HarmonicBalance<'a> {
             }
             if coordinates >= PRODUCTS_FROM {
                 let memory = (&mut self.memory.sum[..], &mut self.products.harmonic);
-                let of = (&*self.forces, &self.tables, self.condensed);
+                let of = (&*self.forces, &*self.tables, self.condensed);
                 rounding += contact_terms::add_products(of, i, (u, path, has_slopes), memory, out);
                 continue;
             }
