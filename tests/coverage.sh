@@ -16,7 +16,7 @@ rm -rf "$work/profiles"
 printf '#!/bin/sh\nexec "$@" -Cinstrument-coverage\n' >"$work/wrapper"
 chmod +x "$work/wrapper"
 export RUSTC_WORKSPACE_WRAPPER="$work/wrapper" CARGO_TARGET_DIR="$work" LLVM_PROFILE_FILE="$work/profiles/%4m.profraw"
-which="-p hbvib-tests -p hbvib-unit-tests -p hbvib-numerics-unit-tests --tests"
+which="-p hbvib-tests -p hbvib-unit-tests -p hbvib-numerics-unit-tests -p hbvib-dissection --tests"
 [ $# = 0 ] || which=$(printf ' --test %s' "$@")
 cargo build --release --quiet --lib --examples
 cargo build --release --quiet --lib --bins -p hbvib-io -p hbvib-cli
@@ -33,7 +33,7 @@ objects=
 for object in $executables "$work"/release/libhbvib.so $(find "$work/release/examples" -maxdepth 1 -type f -perm -u+x ! -name '*-*'); do
     objects="$objects --object $object"
 done
-"$tools/llvm-cov" export --format=lcov --instr-profile="$work/all.profdata" $objects --sources "$PWD/src" "$PWD/crates/numerics/src" >"$work/lcov" 2>"$work/export.log"
+"$tools/llvm-cov" export --format=lcov --instr-profile="$work/all.profdata" $objects --sources "$PWD/src" "$PWD/crates/numerics/src" "$PWD/crates/dissection/src" >"$work/lcov" 2>"$work/export.log"
 python3 - "$work/lcov" "$PWD/" <<'PYTHON' >"$work/lines"
 import collections, sys
 

@@ -19,7 +19,7 @@ fi
 
 # All cases of each test, and the tests that take minutes.
 HBVIB_THOROUGH=1 cargo test --release --tests -- --include-ignored --test-threads=1
-HBVIB_THOROUGH=1 cargo test --release -p hbvib-unit-tests -p hbvib-numerics-unit-tests -- --include-ignored
+HBVIB_THOROUGH=1 cargo test --release -p hbvib-unit-tests -p hbvib-numerics-unit-tests -p hbvib-dissection -- --include-ignored
 cargo test --release -p hbvib-cli --bin hbvib -- --include-ignored
 # Lints of tests, examples and benches.
 cargo clippy --release --workspace --all-targets --features hbvib/bindings -- -D warnings

@@ -105,7 +105,7 @@ fn extended(text: &str) -> BTreeSet<String> {
 
 fn all() -> Vec<(PathBuf, String)> {
     let mut found = Vec::new();
-    for folder in ["src", "crates/numerics/src"] {
+    for folder in ["src", "crates/numerics/src", "crates/dissection/src"] {
         sources(&crate::root().join(folder), &mut found);
     }
     assert!(found.len() > 300);

@@ -33,7 +33,7 @@ const NOT_RECORDED: &str = "not recorded";
 const INTRODUCTION: &str = "\
 # Thresholds
 
-Named numbers of the library, by the folders of `src/` and `crates/numerics/src/`, without the C interface. Each row is made from the
+Named numbers of the library, by the folders of `src/`, `crates/numerics/src/` and `crates/dissection/src/`, without the C interface. Each row is made from the
 declaration and its comment, whose last sentence is the kind: `Kind: cap.`, or with a remark `Kind: cap; two or three suffice.` A tuned
 number says on what it was measured: `Kind: tuned; measured on: chains of 100 to 600 masses.` A test fails where the page is out of
 date, a name stands for two numbers or a kind is missing; CONTRIBUTING.md has the command that writes the page.
@@ -110,7 +110,7 @@ fn kind_of(comment: &str) -> (String, String, String) {
 }
 
 fn thresholds() -> Vec<Threshold> {
-    let crates = [root().join("src"), root().join("crates/numerics/src")];
+    let crates = ["src", "crates/numerics/src", "crates/dissection/src"].map(|folder| root().join(folder));
     let mut paths = Vec::new();
     for folder in &crates {
         sources(folder, &mut paths);

@@ -11,7 +11,7 @@ import shutil
 import subprocess
 
 ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../.."))
-_FOLDERS = ("src", "crates/numerics/src")
+_FOLDERS = ("src", "crates/numerics/src", "crates/dissection/src")
 _ROW = re.compile(r"\| `([A-Z0-9_]+)` \| `(.*?)` \| tuned\b")
 _DECLARED = re.compile(r"^([ \t]*)((?:pub(?:\([a-z]+\))? )?)const ([A-Z][A-Z0-9_]*): ([^=]+?) = ((?:[^;\[\]]|\[[^\[\]]*(?:\[[^\[\]]*\][^\[\]]*)*\])*);",
                        re.MULTILINE)
@@ -106,7 +106,7 @@ def _uses(code, names, called):
 
 def _instrument(text, path, numbers, functions):
     """One file with the numbers as functions; `functions` are constants that are made of them."""
-    home = "crate" if "crates/numerics" in path else "hbvib_numerics"
+    home = "crate" if "crates/" in path else "hbvib_numerics"
     names = numbers.keys() | functions
 
     def declare(match):
@@ -178,11 +178,12 @@ def copy(folder):
 
 
 def _runtime(folder, count):
-    _write(os.path.join(folder, "crates/numerics/src/varied.rs"), _RUNTIME.replace("COUNT", str(count)))
-    path = os.path.join(folder, "crates/numerics/src/lib.rs")
-    text = _read(path)
-    if "pub mod varied;" not in text:
-        _write(path, text + "\npub mod varied;\n")
+    _write(os.path.join(folder, "crates/dissection/src/varied.rs"), _RUNTIME.replace("COUNT", str(count)))
+    for crate, line in (("dissection", "pub mod varied;"), ("numerics", "pub use hbvib_dissection::varied;")):
+        path = os.path.join(folder, f"crates/{crate}/src/lib.rs")
+        text = _read(path)
+        if line not in text:
+            _write(path, f"{text}\n{line}\n")
 
 
 def _refused(folder, numbers, functions, originals):

@@ -63,7 +63,7 @@ fn analysed(
             .map_err(|_| Error::out_of_memory(CONTEXT))
     };
     let dissected = || {
-        let rows = nested_dissection::order(pattern.col_ptr(), pattern.row_idx(), interrupt)?;
+        let rows = nested_dissection(pattern.col_ptr(), pattern.row_idx(), interrupt)?;
         let mut places = try_vec(n, 0, CONTEXT)?;
         for (place, &row) in rows.iter().enumerate() {
             places[row] = place;

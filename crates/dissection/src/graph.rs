@@ -1,19 +1,16 @@
 //! Undirected graphs with weights: the pattern of a symmetric sparse matrix, and what is merged or cut out of it.
 
-use crate::error::{Result, try_push, try_room, try_vec};
-use crate::linalg::sparse_storage::row_index::{Row, narrow, wide};
-
-const CONTEXT: &str = "the graph of a sparse matrix";
+use crate::memory::{Result, Vertex, narrow, try_push, try_room, try_vec, wide};
 
 /// Mark for no vertex.
-const NONE: Row = Row::MAX;
+const NONE: Vertex = Vertex::MAX;
 
 /// A graph without loops.
 #[derive(Debug)]
-pub struct Graph {
+pub(crate) struct Graph {
     /// Start of the neighbours of each vertex; and the end of the last ones.
     starts: Vec<usize>,
-    neighbours: Vec<Row>,
+    neighbours: Vec<Vertex>,
     /// Number of edges that were merged into each edge.
     edges: Vec<u32>,
     /// Number of rows of the matrix that each vertex represents.
@@ -21,26 +18,23 @@ pub struct Graph {
 }
 
 impl Graph {
-    /// The graph of a matrix from its lower triangle, with the vertex of each row. Rows with equal patterns, such as
+    /// The graph of a matrix from its lower triangle, with the vertex of each row. Vertexs with equal patterns, such as
     /// those of a node of finite elements, are one vertex.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
-    pub fn of_triangle(col_ptr: &[usize], rows: &[usize]) -> Result<(Self, Vec<Row>)> {
+    pub(crate) fn of_triangle(col_ptr: &[usize], rows: &[usize]) -> Result<(Self, Vec<Vertex>)> {
         let (starts, all) = mirrored(col_ptr, rows)?;
         let n = starts.len() - 1;
         let pattern = |i: usize| &all[starts[i]..starts[i + 1]];
         let hash = |i: usize| {
-            let mix = |h: u64, &j: &Row| (h ^ u64::from(j)).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29);
+            let mix = |h: u64, &j: &Vertex| (h ^ u64::from(j)).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29);
             pattern(i).iter().fold(0, mix)
         };
-        let mut hashes = try_room(n, CONTEXT)?;
+        let mut hashes = try_room(n)?;
         hashes.extend((0..n).map(hash));
-        let mut of_row = try_vec(n, NONE, CONTEXT)?;
+        let mut of_row = try_vec(n, NONE)?;
         let mut first = Vec::new();
         let mut weights: Vec<u32> = Vec::new();
         for i in 0..n {
-            // Rows with one pattern have each other in it.
+            // Vertexs with one pattern have each other in it.
             let before = pattern(i).iter().map(|&j| wide(j)).take_while(|&j| j < i);
             let mut alike = before.filter(|&j| hashes[j] == hashes[i]);
             if let Some(j) = alike.find(|&j| pattern(j) == pattern(i)) {
@@ -48,27 +42,27 @@ impl Graph {
                 weights[wide(of_row[j])] += 1;
             } else {
                 of_row[i] = narrow(first.len());
-                try_push(&mut first, i, CONTEXT)?;
-                try_push(&mut weights, 1, CONTEXT)?;
+                try_push(&mut first, i)?;
+                try_push(&mut weights, 1)?;
             }
         }
         drop(hashes);
         let is_edge = |i: usize, j: usize| first[wide(of_row[j])] == j && of_row[i] != of_row[j];
         let kept = |&i: &usize| pattern(i).iter().filter(move |&&j| is_edge(i, wide(j)));
-        let mut ends = try_room(first.len() + 1, CONTEXT)?;
+        let mut ends = try_room(first.len() + 1)?;
         ends.push(0);
         let mut count = 0;
         for i in &first {
             count += kept(i).count();
             ends.push(count);
         }
-        let mut neighbours = try_room(count, CONTEXT)?;
+        let mut neighbours = try_room(count)?;
         for i in &first {
             neighbours.extend(kept(i).map(|&j| of_row[wide(j)]));
         }
         let graph = Self {
             starts: ends,
-            edges: try_vec(neighbours.len(), 1, CONTEXT)?,
+            edges: try_vec(neighbours.len(), 1)?,
             neighbours,
             weights,
         };
@@ -76,38 +70,32 @@ impl Graph {
     }
 
     /// Number of vertices of the graph.
-    #[must_use]
-    pub fn vertices(&self) -> usize {
+    pub(crate) fn vertices(&self) -> usize {
         self.weights.len()
     }
 
     /// Number of edges, each counted from both ends.
-    #[must_use]
-    pub fn ends(&self) -> usize {
+    pub(crate) fn ends(&self) -> usize {
         self.neighbours.len()
     }
 
     /// Neighbours of a vertex.
-    pub fn around(&self, v: usize) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn around(&self, v: usize) -> impl Iterator<Item = usize> + '_ {
         self.neighbours[self.starts[v]..self.starts[v + 1]]
             .iter()
             .map(|&u| wide(u))
     }
 
     /// Number of rows that a vertex represents.
-    #[must_use]
-    pub fn weight(&self, v: usize) -> i64 {
+    pub(crate) fn weight(&self, v: usize) -> i64 {
         self.weights[v].into()
     }
 
     /// The graph in which pairs of neighbours are merged, those with the most edges between them first; and the pair
     /// of each vertex.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
-    pub fn of_pairs(&self, seed: &mut u64) -> Result<(Self, Vec<Row>)> {
+    pub(crate) fn of_pairs(&self, seed: &mut u64) -> Result<(Self, Vec<Vertex>)> {
         let n = self.vertices();
-        let mut pair = try_vec(n, NONE, CONTEXT)?;
+        let mut pair = try_vec(n, NONE)?;
         let mut members = Vec::new();
         for v in scattered(n, seed)?.into_iter().map(wide) {
             if pair[v] != NONE {
@@ -123,17 +111,17 @@ impl Graph {
             }
             let number = narrow(members.len());
             (pair[v], pair[best.2]) = (number, number);
-            try_push(&mut members, [v, best.2], CONTEXT)?;
+            try_push(&mut members, [v, best.2])?;
         }
         let mut merged = Self {
-            starts: try_room(members.len() + 1, CONTEXT)?,
-            neighbours: try_room(self.neighbours.len(), CONTEXT)?,
-            edges: try_room(self.neighbours.len(), CONTEXT)?,
-            weights: try_room(members.len(), CONTEXT)?,
+            starts: try_room(members.len() + 1)?,
+            neighbours: try_room(self.neighbours.len())?,
+            edges: try_room(self.neighbours.len())?,
+            weights: try_room(members.len())?,
         };
         merged.starts.push(0);
         // Place of each pair among the neighbours of the present one.
-        let mut place = try_vec(members.len(), usize::MAX, CONTEXT)?;
+        let mut place = try_vec(members.len(), usize::MAX)?;
         for (k, &[a, b]) in members.iter().enumerate() {
             let begin = merged.neighbours.len();
             let both = if a == b { &[a][..] } else { &[a, b] };
@@ -156,11 +144,8 @@ impl Graph {
     }
 
     /// The part of the graph with the given vertices.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
-    pub fn part(&self, vertices: &[Row]) -> Result<Self> {
-        let mut number = try_vec(self.vertices(), NONE, CONTEXT)?;
+    pub(crate) fn part(&self, vertices: &[Vertex]) -> Result<Self> {
+        let mut number = try_vec(self.vertices(), NONE)?;
         for (k, &v) in vertices.iter().enumerate() {
             number[wide(v)] = narrow(k);
         }
@@ -168,10 +153,10 @@ impl Graph {
             |v: usize| (self.starts[v]..self.starts[v + 1]).filter(|&at| number[wide(self.neighbours[at])] != NONE);
         let count = vertices.iter().map(|&v| inside(wide(v)).count()).sum();
         let mut part = Self {
-            starts: try_room(vertices.len() + 1, CONTEXT)?,
-            neighbours: try_room(count, CONTEXT)?,
-            edges: try_room(count, CONTEXT)?,
-            weights: try_room(vertices.len(), CONTEXT)?,
+            starts: try_room(vertices.len() + 1)?,
+            neighbours: try_room(count)?,
+            edges: try_room(count)?,
+            weights: try_room(vertices.len())?,
         };
         part.starts.push(0);
         for v in vertices.iter().map(|&v| wide(v)) {
@@ -186,12 +171,9 @@ impl Graph {
     }
 
     /// Pattern of a lower triangle: start of the later neighbours of each vertex, and these neighbours.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
-    pub fn triangle(&self) -> Result<(Vec<usize>, Vec<usize>)> {
-        let mut starts = try_room(self.starts.len(), CONTEXT)?;
-        let mut later = try_room(self.neighbours.len() / 2, CONTEXT)?;
+    pub(crate) fn triangle(&self) -> Result<(Vec<usize>, Vec<usize>)> {
+        let mut starts = try_room(self.starts.len())?;
+        let mut later = try_room(self.neighbours.len() / 2)?;
         starts.push(0);
         for v in 0..self.vertices() {
             let begin = later.len();
@@ -204,11 +186,8 @@ impl Graph {
 }
 
 /// The numbers below n in an irregular order. A seed determines the order, and is changed by the call.
-///
-/// # Errors
-/// `OutOfMemory`.
-pub fn scattered(n: usize, seed: &mut u64) -> Result<Vec<Row>> {
-    let mut all = try_room(n, CONTEXT)?;
+pub(crate) fn scattered(n: usize, seed: &mut u64) -> Result<Vec<Vertex>> {
+    let mut all = try_room(n)?;
     all.extend((0..n).map(narrow));
     for k in (1..n).rev() {
         // Steele & Flood's generator of splittable numbers
@@ -221,11 +200,11 @@ pub fn scattered(n: usize, seed: &mut u64) -> Result<Vec<Row>> {
     Ok(all)
 }
 
-/// Rows of each column of the whole symmetric matrix, ascending and with the diagonal.
-fn mirrored(col_ptr: &[usize], rows: &[usize]) -> Result<(Vec<usize>, Vec<Row>)> {
+/// Vertexs of each column of the whole symmetric matrix, ascending and with the diagonal.
+fn mirrored(col_ptr: &[usize], rows: &[usize]) -> Result<(Vec<usize>, Vec<Vertex>)> {
     let n = col_ptr.len() - 1;
     let below = |j: usize| rows[col_ptr[j]..col_ptr[j + 1]].iter().copied().filter(move |&i| i > j);
-    let mut starts = try_vec(n + 1, 0, CONTEXT)?;
+    let mut starts = try_vec(n + 1, 0)?;
     for j in 0..n {
         starts[j + 1] += 1;
         for i in below(j) {
@@ -236,9 +215,9 @@ fn mirrored(col_ptr: &[usize], rows: &[usize]) -> Result<(Vec<usize>, Vec<Row>)>
     for j in 0..n {
         starts[j + 1] += starts[j];
     }
-    let mut next = try_room(n, CONTEXT)?;
+    let mut next = try_room(n)?;
     next.extend_from_slice(&starts[..n]);
-    let mut all = try_vec(starts[n], 0, CONTEXT)?;
+    let mut all = try_vec(starts[n], 0)?;
     for j in 0..n {
         for i in below(j) {
             all[next[i]] = narrow(j);

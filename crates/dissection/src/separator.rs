@@ -4,13 +4,10 @@
 //! the best is carried back, improved in every graph on the way by moves of single vertices (Karypis & Kumar 1998,
 //! doi:10.1137/S1064827595287997; Ashcraft & Liu 1998, doi:10.1137/S0895479896297744).
 
-use crate::error::{Error, Result, try_push, try_room, try_vec};
-use crate::interrupt::Interrupt;
-use crate::linalg::elimination_order::graph::{Graph, scattered};
-use crate::linalg::sparse_storage::row_index::{Row, narrow, wide};
+use crate::graph::{Graph, scattered};
+use crate::memory::{OutOfMemory, Result, Vertex, narrow, try_push, try_room, try_vec, wide};
+use crate::nested_dissection::Host;
 use std::collections::BinaryHeap;
-
-const CONTEXT: &str = "a separator";
 
 /// Vertices of a graph that is not merged further, and the share of them that is left where merging ends early.
 /// Kind: tuned; measured on: not recorded.
@@ -37,25 +34,27 @@ const PASSES: u8 = 8;
 const SEPARATOR_PATIENCE: usize = 100;
 
 /// Part that contains a vertex: 0, 1, or the separator between them.
-pub type Part = u8;
+pub(crate) type Part = u8;
 
 /// Mark of the separator.
-pub const SEPARATOR: Part = 2;
+pub(crate) const SEPARATOR: Part = 2;
 
 /// Divides a graph: the part of each vertex, such that no edge joins parts 0 and 1. Equal graphs are divided equally.
-///
-/// # Errors
-/// `OutOfMemory`; `StoppedByCaller`.
-pub fn separated(graph: &Graph, interrupt: &Interrupt<'_>) -> Result<Vec<Part>> {
-    best_of(graph, graph.vertices() / REPEATED_BELOW, &mut 1, interrupt)
+pub(crate) fn separated<H: Host>(graph: &Graph, host: &H) -> core::result::Result<Vec<Part>, H::Error> {
+    best_of(graph, graph.vertices() / REPEATED_BELOW, &mut 1, host)
 }
 
-fn best_of(graph: &Graph, repeated_below: usize, seed: &mut u64, interrupt: &Interrupt<'_>) -> Result<Vec<Part>> {
+fn best_of<H: Host>(
+    graph: &Graph,
+    repeated_below: usize,
+    seed: &mut u64,
+    host: &H,
+) -> core::result::Result<Vec<Part>, H::Error> {
     let n = graph.vertices();
     let mut best: Option<(f64, Vec<Part>)> = None;
-    let mut keep = |parts: Vec<Part>| -> Result<()> {
+    let mut keep = |parts: Vec<Part>| -> core::result::Result<(), H::Error> {
         let mut cut = Cut::new(graph, parts)?;
-        cut.improve(interrupt)?;
+        cut.improve(host)?;
         let cost = cut.cost();
         if best.as_ref().is_none_or(|(least, _)| cost < *least) {
             best = Some((cost, cut.parts));
@@ -65,15 +64,15 @@ fn best_of(graph: &Graph, repeated_below: usize, seed: &mut u64, interrupt: &Int
     let mut merges = n > COARSEST;
     if merges {
         for _ in 0..if n > repeated_below { 1 } else { TRIES } {
-            interrupt.check_before((8 * graph.ends()) as u64)?;
+            host.before((8 * graph.ends()) as u64)?;
             let (merged, pair) = graph.of_pairs(seed)?;
             merges = (merged.vertices() as f64) < STALLED * n as f64;
             if !merges {
                 break;
             }
-            let coarse = best_of(&merged, repeated_below, seed, interrupt)?;
+            let coarse = best_of(&merged, repeated_below, seed, host)?;
             drop(merged);
-            let mut parts = try_room(n, CONTEXT)?;
+            let mut parts = try_room(n)?;
             parts.extend(pair.iter().map(|&k| coarse[wide(k)]));
             keep(parts)?;
         }
@@ -90,10 +89,10 @@ fn best_of(graph: &Graph, repeated_below: usize, seed: &mut u64, interrupt: &Int
 fn grown(graph: &Graph, start: usize) -> Result<Vec<Part>> {
     let n = graph.vertices();
     let all: i64 = (0..n).map(|v| graph.weight(v)).sum();
-    let mut parts = try_vec(n, 1, CONTEXT)?;
+    let mut parts = try_vec(n, 1)?;
     let mut queue = Vec::new();
     let (mut taken, mut at, mut others) = (0, 0, 0..n);
-    try_push(&mut queue, start, CONTEXT)?;
+    try_push(&mut queue, start)?;
     parts[start] = 0;
     while 2 * taken < all {
         if at == queue.len() {
@@ -102,7 +101,7 @@ fn grown(graph: &Graph, start: usize) -> Result<Vec<Part>> {
                 break;
             };
             parts[v] = 0;
-            try_push(&mut queue, v, CONTEXT)?;
+            try_push(&mut queue, v)?;
         }
         let v = queue[at];
         at += 1;
@@ -110,7 +109,7 @@ fn grown(graph: &Graph, start: usize) -> Result<Vec<Part>> {
         for u in graph.around(v) {
             if parts[u] == 1 {
                 parts[u] = 0;
-                try_push(&mut queue, u, CONTEXT)?;
+                try_push(&mut queue, u)?;
             }
         }
     }
@@ -132,9 +131,9 @@ struct Cut<'a> {
     /// For each vertex, the pass in which it left the separator last.
     left: Vec<u8>,
     /// Moves into part 0 and part 1, as (gain, vertex); those outdated since are passed over.
-    moves: [BinaryHeap<(i64, Row)>; 2],
+    moves: [BinaryHeap<(i64, Vertex)>; 2],
     /// Log of the moves: vertex, and the part that it was in.
-    log: Vec<(Row, Part)>,
+    log: Vec<(Vertex, Part)>,
 }
 
 impl<'a> Cut<'a> {
@@ -143,8 +142,8 @@ impl<'a> Cut<'a> {
         let mut state = Self {
             graph,
             weights: [0; 3],
-            beside: try_vec(n, [0; 2], CONTEXT)?,
-            left: try_vec(n, 0, CONTEXT)?,
+            beside: try_vec(n, [0; 2])?,
+            left: try_vec(n, 0)?,
             moves: [BinaryHeap::new(), BinaryHeap::new()],
             log: Vec::new(),
             parts,
@@ -169,9 +168,9 @@ impl<'a> Cut<'a> {
         cut * (1.0 + BALANCE * (a - b).abs() / (a + b).max(1.0)) + beyond
     }
 
-    fn improve(&mut self, interrupt: &Interrupt<'_>) -> Result<()> {
+    fn improve<H: Host>(&mut self, host: &H) -> core::result::Result<(), H::Error> {
         for pass in 1..=PASSES {
-            interrupt.check_before(self.graph.ends() as u64)?;
+            host.before(self.graph.ends() as u64)?;
             if !self.pass(pass)? {
                 break;
             }
@@ -221,7 +220,7 @@ impl<'a> Cut<'a> {
             let gain = self.gain(v, part);
             let moves = &mut self.moves[part];
             if moves.try_reserve(1).is_err() {
-                return Err(Error::out_of_memory(CONTEXT));
+                return Err(OutOfMemory);
             }
             moves.push((gain, narrow(v)));
         }
@@ -256,11 +255,11 @@ impl<'a> Cut<'a> {
     fn carry(&mut self, v: usize, part: usize, number: u8) -> Result<()> {
         let graph = self.graph;
         self.left[v] = number;
-        try_push(&mut self.log, (narrow(v), SEPARATOR), CONTEXT)?;
+        try_push(&mut self.log, (narrow(v), SEPARATOR))?;
         self.set(v, part as Part);
         for u in graph.around(v) {
             if usize::from(self.parts[u]) == 1 - part {
-                try_push(&mut self.log, (narrow(u), self.parts[u]), CONTEXT)?;
+                try_push(&mut self.log, (narrow(u), self.parts[u]))?;
                 self.set(u, SEPARATOR);
                 self.offer(u)?;
                 for w in graph.around(u) {
@@ -298,6 +297,7 @@ impl<'a> Cut<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::nested_dissection::tests::Plain;
 
     /// The graph of a square grid.
     fn grid(side: usize) -> Graph {
@@ -319,7 +319,7 @@ mod tests {
     fn a_grid_falls_apart_along_little_more_than_one_line() {
         for side in [8, 30, 60] {
             let graph = grid(side);
-            let parts = separated(&graph, &Interrupt::none()).unwrap();
+            let parts = separated(&graph, &Plain).unwrap();
             let size = |part| (0..parts.len()).filter(|&v| parts[v] == part).count();
             let largest = SEPARATOR_LARGEST * (side * side) as f64;
             assert!(
@@ -331,7 +331,7 @@ mod tests {
             for v in 0..parts.len() {
                 assert!(graph.around(v).all(|u| parts[u] + parts[v] != 1));
             }
-            assert_eq!(parts, separated(&graph, &Interrupt::none()).unwrap());
+            assert_eq!(parts, separated(&graph, &Plain).unwrap());
         }
     }
 
@@ -340,7 +340,7 @@ mod tests {
         let graph = grid(20);
         let mut cut = Cut::new(&graph, grown(&graph, 7).unwrap()).unwrap();
         let before = cut.cost();
-        cut.improve(&Interrupt::none()).unwrap();
+        cut.improve(&Plain).unwrap();
         assert!(cut.cost() <= before);
         let new = Cut::new(&graph, cut.parts).unwrap();
         assert_eq!((new.weights, new.beside), (cut.weights, cut.beside));

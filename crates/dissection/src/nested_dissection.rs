@@ -1,18 +1,30 @@
 //! Nested dissection: an order of elimination in which separators come after the parts between which they lie (George 1973,
 //! doi:10.1137/0710032). On large meshes its factors are far smaller than those of minimum degrees.
 
-use crate::error::{Error, Result, try_push, try_room, try_vec};
-use crate::interrupt::Interrupt;
-use crate::linalg::elimination_order::graph::Graph;
-use crate::linalg::elimination_order::separator::{SEPARATOR, separated};
-use crate::linalg::sparse_storage::row_index::{Row, narrow, wide};
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::sparse::SymbolicSparseColMatRef;
-use faer::sparse::linalg::amd;
+use crate::graph::Graph;
+use crate::memory::{OutOfMemory, Result, Vertex, narrow, try_push, try_room, try_vec, wide};
+use crate::separator::{SEPARATOR, separated};
 
-const CONTEXT: &str = "nested dissection";
+/// Answers of the program that asks for an order.
+pub trait Host {
+    /// Why an order was not made.
+    type Error: From<OutOfMemory>;
 
-/// Vertices that are ordered by minimum degrees.
+    /// Called before about so many operations; an error ends the work.
+    ///
+    /// # Errors
+    /// Those of the host, which [`order`] passes on.
+    fn before(&self, operations: u64) -> core::result::Result<(), Self::Error>;
+
+    /// Position of each vertex in the order of a piece that is small or hardly divided, such as by minimum degrees. The
+    /// later neighbours of vertex v are `later[starts[v] .. starts[v + 1]]`, ascending.
+    ///
+    /// # Errors
+    /// Those of the host, which [`order`] passes on.
+    fn positions(&self, starts: &[usize], later: &[usize]) -> core::result::Result<Vec<usize>, Self::Error>;
+}
+
+/// Vertices of a piece that the host orders.
 /// Kind: tuned; measured on: not recorded.
 const LEAF: usize = 100;
 
@@ -23,28 +35,31 @@ const MOST: f64 = 0.9;
 /// A part of the graph: its vertices, and their first position in the order.
 struct Piece {
     graph: Graph,
-    vertices: Vec<Row>,
+    vertices: Vec<Vertex>,
     place: usize,
 }
 
 /// The order of elimination of a symmetric matrix, from the pattern of its lower triangle: the row at each position.
 ///
+/// `col_ptr` has the start of each column in `rows`, and the end of the last; the diagonal may be there or not. A matrix has
+/// fewer than 2^32 rows.
+///
 /// # Errors
-/// `OutOfMemory`; `StoppedByCaller`.
-pub fn order(col_ptr: &[usize], rows: &[usize], interrupt: &Interrupt<'_>) -> Result<Vec<usize>> {
-    interrupt.check_before((8 * rows.len()) as u64)?;
+/// [`OutOfMemory`]; those of the host.
+pub fn order<H: Host>(col_ptr: &[usize], rows: &[usize], host: &H) -> core::result::Result<Vec<usize>, H::Error> {
+    host.before((8 * rows.len()) as u64)?;
     let (graph, of_row) = Graph::of_triangle(col_ptr, rows)?;
     let n = graph.vertices();
-    let mut vertices = try_room(n, CONTEXT)?;
+    let mut vertices = try_room(n)?;
     vertices.extend((0..n).map(narrow));
-    let mut order = try_vec(n, 0, CONTEXT)?;
+    let mut order = try_vec(n, 0)?;
     let mut pieces = Vec::new();
     let whole = Piece {
         graph,
         vertices,
         place: 0,
     };
-    try_push(&mut pieces, whole, CONTEXT)?;
+    try_push(&mut pieces, whole)?;
     while let Some(piece) = pieces.pop() {
         let Piece {
             graph,
@@ -53,7 +68,7 @@ pub fn order(col_ptr: &[usize], rows: &[usize], interrupt: &Interrupt<'_>) -> Re
         } = piece;
         let count = vertices.len();
         let parts = if count > LEAF {
-            separated(&graph, interrupt)?
+            separated(&graph, host)?
         } else {
             Vec::new()
         };
@@ -62,13 +77,14 @@ pub fn order(col_ptr: &[usize], rows: &[usize], interrupt: &Interrupt<'_>) -> Re
         let sizes = [members(0).count(), members(1).count()];
         if sizes.contains(&0) || sizes.iter().any(|&size| size as f64 > MOST * count as f64) {
             // Small, or hardly separated.
-            for (&k, &v) in by_degrees(&graph)?.iter().zip(&vertices) {
+            let (starts, later) = graph.triangle()?;
+            for (&k, &v) in host.positions(&starts, &later)?.iter().zip(&vertices) {
                 order[place + k] = v;
             }
             continue;
         }
         for part in [0, 1] {
-            let mut inside = try_room(sizes[usize::from(part)], CONTEXT)?;
+            let mut inside = try_room(sizes[usize::from(part)])?;
             inside.extend(members(part).map(narrow));
             let of_part = graph.part(&inside)?;
             for v in &mut inside {
@@ -80,40 +96,25 @@ pub fn order(col_ptr: &[usize], rows: &[usize], interrupt: &Interrupt<'_>) -> Re
                 vertices: inside,
                 place,
             };
-            try_push(&mut pieces, piece, CONTEXT)?;
+            try_push(&mut pieces, piece)?;
             place += size;
         }
         for (at, v) in members(SEPARATOR).enumerate() {
             order[place + at] = vertices[v];
         }
     }
-    expanded(&order, &of_row)
-}
-
-/// The position of each vertex by approximate minimum degrees.
-fn by_degrees(graph: &Graph) -> Result<Vec<usize>> {
-    let n = graph.vertices();
-    let no_memory = || Error::out_of_memory(CONTEXT);
-    let (starts, later) = graph.triangle()?;
-    let pattern = SymbolicSparseColMatRef::new_checked(n, n, &starts, None, &later);
-    let mut order = try_vec(n, 0, CONTEXT)?;
-    let mut place = try_vec(n, 0, CONTEXT)?;
-    let need = amd::order_scratch::<usize>(n, later.len());
-    let mut scratch = MemBuffer::try_new(need).map_err(|_| no_memory())?;
-    let control = amd::Control::default();
-    amd::order(&mut order, &mut place, pattern, control, MemStack::new(&mut scratch)).map_err(|_| no_memory())?;
-    Ok(place)
+    Ok(expanded(&order, &of_row)?)
 }
 
 /// The row at each position, from the vertex at each position.
-fn expanded(order: &[Row], of_row: &[Row]) -> Result<Vec<usize>> {
-    let mut starts = try_vec(order.len() + 1, 0, CONTEXT)?;
+fn expanded(order: &[Vertex], of_row: &[Vertex]) -> Result<Vec<usize>> {
+    let mut starts = try_vec(order.len() + 1, 0)?;
     for &v in of_row {
         starts[wide(v) + 1] += 1;
     }
     let mut place = 0;
     // First the place of each vertex's first row.
-    let sizes = try_room(order.len(), CONTEXT).map(|mut sizes: Vec<usize>| {
+    let sizes = try_room(order.len()).map(|mut sizes: Vec<usize>| {
         sizes.extend_from_slice(&starts[1..]);
         sizes
     })?;
@@ -121,7 +122,7 @@ fn expanded(order: &[Row], of_row: &[Row]) -> Result<Vec<usize>> {
         starts[wide(v)] = place;
         place += sizes[wide(v)];
     }
-    let mut rows = try_vec(of_row.len(), 0, CONTEXT)?;
+    let mut rows = try_vec(of_row.len(), 0)?;
     for (row, &v) in of_row.iter().enumerate() {
         rows[starts[wide(v)]] = row;
         starts[wide(v)] += 1;
@@ -130,8 +131,21 @@ fn expanded(order: &[Row], of_row: &[Row]) -> Result<Vec<usize>> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
+
+    /// Never stops; pieces are eliminated from the first vertex to the last.
+    pub(crate) struct Plain;
+
+    impl Host for Plain {
+        type Error = OutOfMemory;
+        fn before(&self, _operations: u64) -> Result<()> {
+            Ok(())
+        }
+        fn positions(&self, starts: &[usize], _later: &[usize]) -> Result<Vec<usize>> {
+            Ok((0..starts.len() - 1).collect())
+        }
+    }
 
     /// Each row once.
     fn is_order(rows: &[usize], n: usize) -> bool {
@@ -147,7 +161,7 @@ mod tests {
             rows.extend((j..n).filter(|&i| i == j || is_entry(i, j)));
             col_ptr.push(rows.len());
         }
-        order(&col_ptr, &rows, &Interrupt::none()).unwrap()
+        order(&col_ptr, &rows, &Plain).unwrap()
     }
 
     #[test]
