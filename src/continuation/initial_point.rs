@@ -65,8 +65,9 @@ pub struct Effort {
     pub iterations: usize,
 }
 
-/// A homotopy that needs more points circulates among corners.
-const FULL: Effort = Effort {
+/// Bounds of the work for a first point: a homotopy that needs more points circulates among corners.
+/// Kind: cap.
+const INITIAL_POINT_MOST: Effort = Effort {
     points: 1_000,
     iterations: usize::MAX,
 };
@@ -86,7 +87,7 @@ const LONG_STEP: f64 = 0.1;
 /// `NoConvergence` if every method failed, or the failure of a law if that was the cause; `Singular` if the linear
 /// structure has no solution; those of the problem; `StoppedByCaller`.
 pub fn solve(problem: &mut dyn Problem, settings: &Settings, interrupt: &Interrupt<'_>) -> Result<First> {
-    solve_within(problem, settings, FULL, interrupt)
+    solve_within(problem, settings, INITIAL_POINT_MOST, interrupt)
 }
 
 /// Solves for the first point as `solve` does, with bounded work.

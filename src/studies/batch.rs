@@ -28,6 +28,7 @@ const CONTEXT: &str = "the designs";
 const MAY_HAVE_BASIS: usize = 100;
 
 /// Time between two looks at the caller's flag while other threads work.
+/// Kind: block.
 const PAUSE: Duration = Duration::from_millis(2);
 
 /// Checks of a design between two of the caller's hooks.

@@ -10,7 +10,8 @@ use crate::harmonics::discretised::Traceable;
 use crate::results::SpecialKind;
 use crate::tracing::branch_tracer::BranchTracer;
 
-/// Bounds of the work for such a solution. Kind: cap.
+/// Bounds of the work for such a solution.
+/// Kind: cap.
 const REQUESTED_MOST: Effort = Effort {
     points: 200,
     iterations: 2_000,

@@ -72,11 +72,14 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
+/// Types of numbers, and of what is made of numbers that decide.
+const NUMBERS: [&str; 9] = ["f64", "f32", "usize", "u8", "u32", "u64", "i32", "Effort", "Duration"];
+
 /// Whether a type has numbers alone: `f64`, `(usize, f64)`, `[f64; 3]`.
 fn is_numeric(kind: &str) -> bool {
     let words = kind.split(|c: char| !c.is_ascii_alphanumeric());
     let mut words = words.filter(|word| !word.is_empty() && word.parse::<usize>().is_err());
-    kind != "[u8; 8]" && words.all(|word| ["f64", "f32", "usize", "u8", "u32", "u64", "i32"].contains(&word))
+    kind != "[u8; 8]" && words.all(|word| NUMBERS.contains(&word))
 }
 
 /// Name, type and value of the constant that a text begins with; its visibility stands before it.

@@ -25,7 +25,8 @@ const COARSE_START_AT_ONCE: usize = 12;
 const COARSE_START_LARGE: usize = 1000;
 
 /// Bounds on points and iterations of a homotopy with few harmonics.
-const EFFORT: Effort = Effort {
+/// Kind: cap.
+const COARSE_START_MOST: Effort = Effort {
     points: 200,
     iterations: usize::MAX,
 };
@@ -76,7 +77,7 @@ impl CoarseStart {
             let is_transferred = given.is_some();
             let at = settings.start.into();
             let mut problem = HarmonicBalance::new(&condensed, response, at, solver.samples, given, interrupt)?;
-            let first = match initial_point::solve_within(&mut problem, settings, EFFORT, interrupt) {
+            let first = match initial_point::solve_within(&mut problem, settings, COARSE_START_MOST, interrupt) {
                 Ok(first) => first,
                 Err(e) if e.recoverable || matches!(e.status, Status::NoConvergence | Status::Singular) => {
                     return Ok(None);
