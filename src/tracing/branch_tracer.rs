@@ -121,6 +121,11 @@ impl<'a> BranchTracer<'a> {
         self.merged_at
     }
 
+    /// The first undamped resonance that a linear stretch has passed and that the forces excite.
+    pub fn unbounded_at(&self) -> Option<f64> {
+        self.linear_grid.as_ref().and_then(|grid| grid.unbounded)
+    }
+
     /// Number of error estimates made.
     pub fn estimates(&self) -> usize {
         self.controller.estimates()

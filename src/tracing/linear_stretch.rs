@@ -11,6 +11,7 @@ use crate::continuation::{Point, PointAt};
 use crate::error::{Result, Status, try_push};
 use crate::harmonics::discretised::Traceable;
 use crate::hooks::{Hooks, LogLevel};
+use crate::linalg::norm;
 use crate::options::Range;
 use crate::results::SpecialKind;
 use crate::tracing::branch_tracer::{BranchTracer, Stretch, some_unless_lost};
@@ -56,6 +57,14 @@ const LINEAR_STRETCH_MAX_EVALUATIONS: usize = 100;
 /// Kind: tuned; measured on: not recorded.
 const BRACKET: f64 = 1e-10;
 const WIDENING: f64 = 100.0;
+
+/// Relative distance from an undamped resonance at which its part of the motion dominates, however small its force.
+/// Kind: rounding.
+const BESIDE_UNDAMPED: f64 = 1e-8;
+
+/// Ratio of a motion there to those at the neighbours, 4e-5 and more away, that nothing but a pole makes.
+/// Kind: tuned; measured on: undamped oscillators, chains, sectors, and dampers at nodes of modes.
+const FAR_LARGER: f64 = 10.0;
 
 const CONTEXT: &str = "the linear response";
 
@@ -231,12 +240,13 @@ impl BranchTracer<'_> {
     ) -> Result<()> {
         let (pa, pb) = (a.parameter(), b.parameter());
         let (low, high) = if pa < pb { (a, b) } else { (b, a) };
-        let undamped = self.linear_grid.iter().flat_map(|grid| &grid.undamped);
-        let mut between = undamped.filter(|&&omega| low.parameter() < omega && omega < high.parameter());
-        if let Some(omega) = between.next() {
+        if let Some(omega) = self.unbounded_between(analysis, [low, high])? {
             let text =
                 format!("undamped resonance at {omega}: the response is unbounded, and no peak is recorded there");
             hooks.log(LogLevel::Warn, &text);
+            if let Some(grid) = &mut self.linear_grid {
+                grid.unbounded.get_or_insert(omega);
+            }
         } else {
             if analysis.observes_peaks() {
                 self.find_peaks(analysis, SpecialKind::Peak, low, high)?;
@@ -256,6 +266,28 @@ impl BranchTracer<'_> {
             }
         }
         Ok(())
+    }
+
+    /// The first undamped resonance between two neighbours that the forces excite: right beside it the motion is far larger
+    /// than at both.
+    fn unbounded_between(&self, analysis: &mut dyn Traceable, ends: [&Point; 2]) -> Result<Option<f64>> {
+        let Some(grid) = &self.linear_grid else { return Ok(None) };
+        let largest = ends.iter().fold([0.0_f64; 2], |most, point| larger(most, point));
+        for &omega in &grid.undamped {
+            if !(ends[0].parameter() < omega && omega < ends[1].parameter()) {
+                continue;
+            }
+            for at in [omega * (1.0 - BESIDE_UNDAMPED), omega * (1.0 + BESIDE_UNDAMPED)] {
+                let Some(beside) = analysis.linear_at(ends[0], at, self.interrupt)? else {
+                    continue;
+                };
+                let here = larger([0.0; 2], &beside);
+                if (0..2).any(|i| here[i] > FAR_LARGER * largest[i]) {
+                    return Ok(Some(omega));
+                }
+            }
+        }
+        Ok(None)
     }
 
     /// Records a special point with the harmonics that it requires; the stretch continues with its own harmonics.
@@ -418,8 +450,21 @@ impl BranchTracer<'_> {
                 break;
             }
         }
+        if best.is_none() {
+            // The root is at an end, up to rounding.
+            let end = if low.1.abs() <= high.1.abs() { low.0 } else { high.0 };
+            best = analysis.linear_at(near, end, self.interrupt)?;
+        }
         Ok(best)
     }
+}
+
+/// The larger of two amplitudes, and of two motions of the contacts.
+fn larger([amplitude, motion]: [f64; 2], point: &Point) -> [f64; 2] {
+    [
+        amplitude.max(point.amplitude.norm()),
+        motion.max(norm(point.unknowns())),
+    ]
 }
 
 /// ½ d|z|²/ds and |z|² at s, for the cubic through two points of the amplitude z and their derivatives.

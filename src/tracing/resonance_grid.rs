@@ -34,8 +34,10 @@ const CONTEXT: &str = "the frequencies of a linear response";
 pub(crate) struct LinearGrid {
     /// Parameter values of the grid, ascending.
     values: Vec<f64>,
-    /// Parameter values of undamped resonances, where the response is unbounded.
+    /// Parameter values of undamped resonances, where the response is unbounded if it is excited.
     pub undamped: Vec<f64>,
+    /// The first of them that was passed and is excited.
+    pub unbounded: Option<f64>,
 }
 
 impl LinearGrid {
@@ -51,6 +53,7 @@ impl LinearGrid {
         Ok(Self {
             values: values(resonances, range)?,
             undamped,
+            unbounded: None,
         })
     }
 

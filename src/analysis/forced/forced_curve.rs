@@ -318,17 +318,25 @@ fn follow(
         interrupt,
     )?;
     let mut branch = response.finish(model, solver, &ending, tracer.estimates())?;
-    tell_end(&mut branch, length, inside.map(|_| tracer.merged_at()));
+    tell_end(
+        &mut branch,
+        (length, tracer.unbounded_at()),
+        inside.map(|_| tracer.merged_at()),
+    );
     Ok(Ok(branch))
 }
 
 /// Reports whether a complete branch is unbounded, and where a curve that was entered inside the range came back to
 /// its parent.
-fn tell_end(branch: &mut Branch, length: f64, merged_at: Option<f64>) {
-    if branch.status() == Status::Ok
-        && let Some(reason) = unbounded_response::in_branch(branch, length)
-    {
-        branch.set_ending(Status::StoppedUnbounded, Some(reason), (false, false));
+fn tell_end(branch: &mut Branch, (length, unbounded_at): (f64, Option<f64>), merged_at: Option<f64>) {
+    if branch.status() == Status::Ok {
+        let reason = match unbounded_at {
+            Some(omega) => Some(unbounded_response::at(omega)),
+            None => unbounded_response::in_branch(branch, length),
+        };
+        if let Some(reason) = reason {
+            branch.set_ending(Status::StoppedUnbounded, Some(reason), (false, false));
+        }
     }
     if let Some(at) = merged_at {
         branch.set_descent(Descent::merging_at(at));

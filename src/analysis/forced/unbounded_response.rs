@@ -31,6 +31,17 @@ pub(crate) fn in_branch(branch: &Branch, length: f64) -> Option<Error> {
     ))
 }
 
+/// Reason why a response that passes an undamped resonance has no bound.
+pub(crate) fn at(omega: f64) -> Error {
+    Error::new(
+        Status::NoBoundedSolution,
+        format_args!(
+            "the response has no bound at {omega}: an undamped resonance, at which no peak is recorded; all points are \
+             kept; add damping"
+        ),
+    )
+}
+
 /// Reason why there is no solution at an angular frequency, if it is known. An error while searching for the reason
 /// is ignored.
 ///

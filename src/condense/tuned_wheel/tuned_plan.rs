@@ -212,5 +212,6 @@ fn multiple(a: &Csc, of: &Csc) -> Option<Complex64> {
     let product: Complex64 = a.values.iter().zip(&of.values).map(|(a, of)| a * of.conj()).sum();
     let factor = product / of.values.iter().map(Complex64::norm_sqr).sum::<f64>();
     let gap = a.values.iter().zip(&of.values).map(|(a, of)| (a - factor * of).norm());
-    (gap.fold(0.0, f64::max) <= PROPORTIONAL_DIFFERENCES * largest(a)).then_some(factor)
+    // A factor that is no number, of a matrix of zeros, is none.
+    (factor.is_finite() && gap.fold(0.0, f64::max) <= PROPORTIONAL_DIFFERENCES * largest(a)).then_some(factor)
 }
