@@ -27,7 +27,8 @@ class BladeModes(NamedTuple):
     modes      numbers of the modes there, the `dofs` of a pattern.
     numbers    new number of each degree of freedom of the given sector, -1 where it has none.
     left_out   largest relative error of a frequency of the tuned modes that were asked for by the modes of the blade that are left
-               out, as estimated, with all contacts stuck and with all of them free; infinity where one lies above the first of these.
+               out, as estimated, with all contacts stuck and with all of them free; infinity where one lies above the first of these;
+               NaN, unknown, where matrices of a speed act: there compare `linear_modes` of both sectors.
     points     degrees of freedom of the given sector whose motion was asked for, and `weights` of the new ones that make it.
 
     >>> import hbvib

@@ -6,7 +6,7 @@ use crate::common::refusal::refused;
 use crate::common::{all_harmonics, harmonics, omega_range, solve_at};
 use hbvib::{
     BladeProperty, Contact, ContactState, ForcedOptions, Hooks, Interrupt, MatrixKind, MatrixView, Mistuning, Model,
-    Response, Status, forced_response,
+    Response, Speed, Status, forced_response,
 };
 use num_complex::Complex64;
 
@@ -199,6 +199,38 @@ fn tips(sector: &Model, dofs: &[usize], tip: (&[usize], &[f64])) -> Vec<f64> {
         all.extend(found.responses().iter().map(|one| one.values()[0]));
     }
     all
+}
+
+#[test]
+fn no_error_is_told_where_matrices_of_a_speed_act() {
+    let mut sector = sector();
+    let n = N * N;
+    for kind in [MatrixKind::Gyroscopic, MatrixKind::StiffnessSpeed2] {
+        let mut values = vec![0.0; n];
+        let at = [(N - 1) * N + N - 2, (N - 2) * N + N - 1];
+        (values[at[0]], values[at[1]]) = if kind == MatrixKind::Gyroscopic {
+            (0.1, -0.1)
+        } else {
+            (0.1, 0.1)
+        };
+        let mut turning = sector.try_clone().unwrap();
+        turning.set_matrix(kind, &MatrixView::dense(N, &values)).unwrap();
+        let told = |model: &hbvib::Model| {
+            let found = model.on_blade_modes(&blade(), (5, 1), &Interrupt::none()).unwrap();
+            found.left_out
+        };
+        assert!(told(&turning) < 1.0);
+        turning.set_speed(Speed::Fixed(0.5)).unwrap();
+        assert!(told(&turning).is_nan());
+    }
+    sector.set_speed(Speed::Fixed(0.5)).unwrap();
+    assert!(
+        sector
+            .on_blade_modes(&blade(), (5, 1), &Interrupt::none())
+            .unwrap()
+            .left_out
+            < 1.0
+    );
 }
 
 #[test]

@@ -344,3 +344,65 @@ fn a_file_that_may_be_cut_off_within_its_last_number_is_a_warning() {
     assert!(told(check("cut_again", &cut, "")) >= 1);
     assert!(told(check("cut_coupling", &stiffness, &coupling)) >= 1);
 }
+
+/// One mass in a folder of its own: the matrices are files of the job.
+fn one_mass(name: &str, model: &str, output: &str) -> (PathBuf, String) {
+    let folder = folder(name);
+    for (file, value) in [("k.mtx", 2.0), ("m.mtx", 1.0)] {
+        let text = format!("%%MatrixMarket matrix coordinate real symmetric\n1 1 1\n1 1 {value}\n");
+        std::fs::write(folder.join(file), text).unwrap();
+    }
+    let job = format!(
+        "[model]\nstiffness = 'k.mtx'\nmass = 'm.mtx'\nrayleigh = [0.0, 0.02]\n{model}\n[[force]]\ndof = 0\nvalue = 1.0\n\
+         [forced]\nfrom_hz = 0.1\nto_hz = 0.4\nharmonics = 1\n[output]\n{output}\n"
+    );
+    std::fs::write(folder.join("job.toml"), &job).unwrap();
+    (folder, job)
+}
+
+#[test]
+fn no_file_is_written_over_one_that_the_job_reads_or_writes() {
+    for (i, (output, words)) in [
+        (
+            "csv = 'k.mtx'",
+            "output.csv = \"k.mtx\" would replace a file that is read by model.stiffness",
+        ),
+        ("csv = 'job.toml'", "read by the job itself"),
+        ("figure = './m.mtx'", "read by model.mass"),
+        ("csv = 'link.csv'", "read by model.stiffness"),
+        ("csv = 'r.out'\nnpz = './r.out'", "written by output.csv"),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let (folder, job) = one_mass(&format!("replaced_{i}"), "", output);
+        let _ = std::fs::remove_file(folder.join("link.csv"));
+        #[cfg(unix)]
+        std::os::unix::fs::symlink("k.mtx", folder.join("link.csv")).unwrap();
+        if output.contains("link") && !cfg!(unix) {
+            continue;
+        }
+        let before = std::fs::read(folder.join("k.mtx")).unwrap();
+        let run = crate::common::command(&["run", "job.toml"], &folder);
+        let errors = printed(&run.stderr);
+        assert!(!run.status.success() && errors.contains(words), "{output}: {errors}");
+        assert_eq!(std::fs::read(folder.join("k.mtx")).unwrap(), before);
+        assert_eq!(std::fs::read_to_string(folder.join("job.toml")).unwrap(), job);
+    }
+    let (folder, _) = one_mass("replaced_none", "", "csv = 'r.csv'\nnpz = 'r.npz'");
+    for _ in 0..2 {
+        let run = crate::common::command(&["run", "job.toml"], &folder);
+        assert!(run.status.success(), "{}", printed(&run.stderr));
+    }
+}
+
+#[test]
+fn an_engine_order_without_sectors_is_refused() {
+    let (folder, _) = one_mass("order_alone", "engine_order = 2", "csv = 'r.csv'");
+    let run = crate::common::command(&["run", "job.toml"], &folder);
+    let errors = printed(&run.stderr);
+    assert!(
+        !run.status.success() && errors.contains("engine_order = 2 without sectors"),
+        "{errors}"
+    );
+}

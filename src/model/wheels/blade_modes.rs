@@ -38,7 +38,7 @@ pub struct BladeModes {
     pub first: usize,
     /// Estimate of the largest relative error of a frequency by the omitted modes, over the requested tuned modes of
     /// all nodal diameters, with all contacts stuck and with all of them free. Infinite where one lies above the first
-    /// omitted mode.
+    /// omitted mode; NaN, unknown, where matrices of a speed act: there compare natural frequencies of both sectors.
     pub left_out: f64,
     basis: Basis,
 }
@@ -114,7 +114,12 @@ impl Model {
             let number = independent(self, dof).ok().and_then(|number| basis.number[number]);
             try_push(&mut numbers, number, CONTEXT)?;
         }
-        let left_out = basis.left_out(self, &reduced, families, interrupt)?;
+        // At speed the blade has other modes than those whose squares the estimate compares with.
+        let left_out = if structure.is_rotating() {
+            f64::NAN
+        } else {
+            basis.left_out(self, &reduced, families, interrupt)?
+        };
         Ok(BladeModes {
             model: reduced,
             numbers,

@@ -2,6 +2,7 @@
 
 use crate::job_file::job_damper::DamperPart;
 use crate::job_file::job_faces::FacesPart;
+use crate::job_file::job_files::check_files;
 use crate::job_file::job_fit::{DataPart, FitPart};
 use crate::job_file::job_life::LifePart;
 use crate::job_file::job_motion::{ModalPart, MotionPart, UnitsPart};
@@ -397,6 +398,15 @@ impl Job {
         let text = std::fs::read_to_string(path).map_err(|e| format!("{}: cannot be read: {e}", path.display()))?;
         let job = Self::parse(&text, path.parent().unwrap_or(Path::new("")));
         let job = job.map_err(|e| format!("{}: {e}", path.display()))?;
+        check_files(&text, path, &job.folder).map_err(|e| format!("{}: {e}", path.display()))?;
+        let model = &job.model;
+        if model.engine_order != 0 && model.sectors == 1 && model.faces.is_none() {
+            return Err(format!(
+                "{}: [model]: engine_order = {} without sectors has no meaning: needs sectors, the number of them",
+                path.display(),
+                model.engine_order
+            ));
+        }
         if job.forced.is_some() && job.mode.is_some() {
             return Err(format!(
                 "{}: names two analyses: needs one of [forced] and [mode]",

@@ -3,6 +3,7 @@
 pub(crate) mod job;
 pub(crate) mod job_damper;
 pub(crate) mod job_faces;
+pub(crate) mod job_files;
 pub(crate) mod job_fit;
 pub(crate) mod job_life;
 pub(crate) mod job_motion;
