@@ -19,7 +19,7 @@ const WIDE: [(&str, usize); 0] = [];
 
 /// Types whose methods stand in more files, and their number: the first two have the public methods of a model and of a branch,
 /// each analysis in the room of its method.
-const SPREAD: [(&str, usize); 12] = [
+const SPREAD: [(&str, usize); 10] = [
     ("Branch", 17),
     ("BranchTracer", 9),
     ("Condensed", 6),
@@ -28,10 +28,8 @@ const SPREAD: [(&str, usize); 12] = [
     ("Corrector", 6),
     ("HarmonicBalance", 4),
     ("Model", 21),
-    ("Search", 7),
     ("Structure", 13),
     ("Tree", 5),
-    ("Walk", 8),
 ];
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
