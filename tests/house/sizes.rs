@@ -19,11 +19,10 @@ const WIDE: [(&str, usize); 0] = [];
 
 /// Types whose methods stand in more files, and their number: the first two have the public methods of a model and of a branch,
 /// each analysis in the room of its method.
-const SPREAD: [(&str, usize); 8] = [
+const SPREAD: [(&str, usize); 7] = [
     ("Branch", 17),
     ("BranchTracer", 9),
     ("Condensed", 6),
-    ("Contact", 5),
     ("Corrector", 6),
     ("Model", 21),
     ("Structure", 13),

@@ -6,6 +6,7 @@
 
 use crate::byte_stream::ByteWriter;
 use crate::contact::Contact;
+use crate::contact::described::saved_contact;
 use crate::error::{Result, fail};
 use crate::linalg::sparse_storage::sparse::Columns;
 use crate::model::matrices::speed::Speed;
@@ -146,7 +147,7 @@ impl Model {
             springs: springs.fold(0, u64::wrapping_add),
             contacts: digest(|out| {
                 for contact in &self.contacts {
-                    contact.digest_to(out);
+                    digest_to(contact, out);
                     for place in contact.slider() {
                         out.f64(place);
                     }
@@ -220,14 +221,12 @@ impl Model {
     }
 }
 
-impl Contact {
-    /// Writes the data of a contact that affect results; for a law of the caller those that its program supplies.
-    fn digest_to(&self, out: &mut ByteWriter<'_>) {
-        self.kind.digest_to(out);
-        self.places_to(out);
-        if self.rigid.is_some() {
-            self.rigid_to(out);
-        }
+/// Writes the data of a contact that affect results; for a law of the caller those that its program supplies.
+fn digest_to(contact: &Contact, out: &mut ByteWriter<'_>) {
+    contact.kind.digest_to(out);
+    saved_contact::places_to(contact, out);
+    if contact.rigid.is_some() {
+        saved_contact::rigid_to(contact, out);
     }
 }
 

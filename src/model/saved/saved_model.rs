@@ -8,6 +8,7 @@
 
 use crate::byte_stream::{ByteReader, ByteWriter, checksum};
 use crate::contact::Contact;
+use crate::contact::described::saved_contact;
 use crate::contact::forms::constants::Constant;
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::model::excitation::{Excitation, Force};
@@ -110,7 +111,7 @@ impl Model {
         self.structure.save_to(out);
         out.count(self.contacts.len());
         for (i, contact) in self.contacts.iter().enumerate() {
-            contact.save_to(out).map_err(|e| e.at(format_args!("contact {i}")))?;
+            saved_contact::save_to(contact, out).map_err(|e| e.at(format_args!("contact {i}")))?;
         }
         out.count(self.springs.len());
         for spring in &self.springs {
@@ -151,7 +152,7 @@ impl Model {
         }
         if has_bodies {
             for contact in &self.contacts {
-                contact.rigid_to(out);
+                saved_contact::rigid_to(contact, out);
             }
             for force in self.excitation.forces() {
                 out.f64(force.per_speed2);
@@ -189,8 +190,8 @@ impl Model {
             excitation: Excitation::default(),
             speed_loads: Vec::new(),
         };
-        for i in 0..input.entries(Contact::LEAST_BYTES)? {
-            let contact = Contact::load_from(input)?;
+        for i in 0..input.entries(saved_contact::CONTACT_LEAST_BYTES)? {
+            let contact = saved_contact::load_from(input)?;
             model
                 .check_contact(&contact)
                 .map_err(|e| e.at(format_args!("contact {i}")))?;
@@ -250,7 +251,7 @@ impl Model {
         }
         if version >= 4 {
             for i in 0..model.contacts.len() {
-                model.contacts[i].load_rigid(input)?;
+                saved_contact::load_rigid(&mut model.contacts[i], input)?;
                 let checked = model.check_contact(&model.contacts[i]);
                 checked.map_err(|e| e.at(format_args!("contact {i}")))?;
             }
