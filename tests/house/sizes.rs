@@ -19,14 +19,13 @@ const WIDE: [(&str, usize); 0] = [];
 
 /// Types whose methods stand in more files, and their number: the first two have the public methods of a model and of a branch,
 /// each analysis in the room of its method.
-const SPREAD: [(&str, usize); 7] = [
+const SPREAD: [(&str, usize); 6] = [
     ("Branch", 17),
     ("BranchTracer", 9),
     ("Condensed", 6),
     ("Corrector", 6),
     ("Model", 21),
     ("Structure", 13),
-    ("Tree", 5),
 ];
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
