@@ -19,11 +19,9 @@ const WIDE: [(&str, usize); 0] = [];
 
 /// Types whose methods stand in more files, and their number: the first two have the public methods of a model and of a branch,
 /// each analysis in the room of its method.
-const SPREAD: [(&str, usize); 6] = [
+const SPREAD: [(&str, usize); 4] = [
     ("Branch", 17),
     ("BranchTracer", 9),
-    ("Condensed", 6),
-    ("Corrector", 6),
     ("Model", 21),
     ("Structure", 13),
 ];

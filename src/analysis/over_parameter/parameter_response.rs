@@ -7,6 +7,7 @@ use crate::analysis::over_parameter::damping_maximum;
 use crate::analysis::over_parameter::followed::Followed;
 use crate::analysis::over_parameter::parameter_curve::CurveRecorder;
 use crate::analysis::over_parameter::parameter_range::{Follow, ParameterRange, settings, wanted};
+use crate::condense::blocks::reduction;
 use crate::condense::{Condensed, Reference};
 use crate::error::{Error, Result, Status, fail, try_push, try_vec};
 use crate::harmonics::harmonic_levels::HarmonicLevels;
@@ -227,7 +228,7 @@ pub(crate) fn follow_from(
         interrupt,
     )?;
     let settings = settings(solver, range);
-    let reduction = resolution.condensed.reduction_with(first, solver, 0);
+    let reduction = reduction::reduction_with(&resolution.condensed, first, solver, 0);
     let highest = if levels.is_automatic() { 0 } else { solver.harmonics };
     let mut found = Branch::new(resolution, reduction, highest, branch.response_dof())?;
     let recorder = CurveRecorder::new(

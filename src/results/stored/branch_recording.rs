@@ -1,5 +1,6 @@
 //! Storing the points of a branch.
 
+use crate::condense::blocks::reduction;
 use crate::condense::{Condensed, Reduction, Resolution};
 use crate::error::{Error, Result, Status, try_push};
 use crate::model::Model;
@@ -120,7 +121,7 @@ impl Branch {
             harmonics_carried: 0,
             mean_carried: false,
             even_removed: false,
-            ..condensed.reduction_with(model, options, 0)
+            ..reduction::reduction_with(&condensed, model, options, 0)
         };
         let resolution = Resolution {
             condensed: Arc::new(condensed),
@@ -319,7 +320,7 @@ impl Branch {
             .max_by_key(|resolution| resolution.condensed.unknowns());
         if let Some(largest) = largest {
             let held = self.run.reduction.held_by_contacts;
-            let reduction = largest.condensed.reduction_with(model, options, held);
+            let reduction = reduction::reduction_with(&largest.condensed, model, options, held);
             self.set_reduction(reduction);
         }
     }
