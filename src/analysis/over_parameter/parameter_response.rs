@@ -14,8 +14,8 @@ use crate::harmonics::harmonic_levels::HarmonicLevels;
 use crate::hooks::Hooks;
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
-use crate::options::Range;
-use crate::options::{ForcedOptions, Response, SolverOptions, check_responses};
+use crate::options::{ForcedOptions, Range, Response, SolverOptions, check_responses};
+use crate::results::motions::recovery;
 use crate::results::{Branch, HigherPeak, ParameterData, Special};
 use crate::sensitivity::{Parameter, ResponsePoint, TrackedResponse, design};
 
@@ -204,7 +204,7 @@ pub(crate) fn follow_from(
     let Some(omega) = branch.omega_at(point) else {
         return fail!(Internal, "a stored point has no frequency");
     };
-    let motion = branch.relative_motion_at(point, interrupt)?;
+    let motion = recovery::relative_motion_at(branch, point, interrupt)?;
     let levels = HarmonicLevels::new(first, solver, &forced_harmonics(first)?, |harmonics, _| {
         let options = SolverOptions { harmonics, ..*solver };
         Condensed::with_reference(first, &options, (omega, omega), Some(Reference::Complex), interrupt)
