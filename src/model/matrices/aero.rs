@@ -12,51 +12,38 @@ use crate::model::matrices::structure::Structure;
 use num_complex::Complex64;
 use std::sync::Arc;
 
-impl Model {
-    /// Sets forces on a sector that follow the motion of its neighbours: with f on the right-hand side,
-    /// f_i = Σ_k Σ_j c(k, i, j)·x_j of the sector at the distance `offsets[k]`, or of velocities. `coefficients` has a
-    /// square matrix over `dofs` for each offset, row after row. A later call of the same form replaces an earlier one;
-    /// empty lists remove it. Complex coefficients act on harmonics above 0; the mean has the real part, and time
-    /// integration refuses them. [`Self::linear_modes`] leave the influence out.
-    ///
-    /// # Errors
-    /// `Unsupported` for a plain structure; `Index`, `Argument`, `Dimension` or `NotFinite`, naming the entry.
-    pub fn set_aero(
-        &mut self,
-        dofs: &[usize],
-        coefficients: &[Complex64],
-        offsets: &[i64],
-        form: AeroForm,
-    ) -> Result<()> {
-        let given = AeroInfluence::new(self.structure().wheel(), dofs, offsets, coefficients)?;
-        self.changed_structure().aero_mut()[form as usize] = given.map(Arc::new);
-        Ok(())
-    }
+/// Sets forces on a sector that follow the motion of its neighbours.
+pub(crate) fn set_aero(
+    model: &mut Model,
+    dofs: &[usize],
+    coefficients: &[Complex64],
+    offsets: &[i64],
+    form: AeroForm,
+) -> Result<()> {
+    let given = AeroInfluence::new(model.structure().wheel(), dofs, offsets, coefficients)?;
+    model.changed_structure().aero_mut()[form as usize] = given.map(Arc::new);
+    Ok(())
+}
 
-    /// The aerodynamic influence of a form; `None` if the model has none.
-    #[must_use]
-    pub fn aero(&self, form: AeroForm) -> Option<&AeroInfluence> {
-        self.structure().aero()[form as usize].as_deref()
-    }
-
-    pub(crate) fn save_aero(&self, out: &mut ByteWriter<'_>) {
-        for influence in self.structure().aero() {
-            out.bool(influence.is_some());
-            if let Some(influence) = influence {
-                influence.save_to(out);
-            }
+/// .
+pub(crate) fn save_aero(model: &Model, out: &mut ByteWriter<'_>) {
+    for influence in model.structure().aero() {
+        out.bool(influence.is_some());
+        if let Some(influence) = influence {
+            influence.save_to(out);
         }
     }
+}
 
-    pub(crate) fn load_aero(&mut self, input: &mut ByteReader<'_>) -> Result<()> {
-        for form in 0..FORMS {
-            if input.bool()? {
-                let loaded = AeroInfluence::load_from(self.structure().wheel(), input)?;
-                self.structure_mut().aero_mut()[form] = loaded.map(Arc::new);
-            }
+/// .
+pub(crate) fn load_aero(model: &mut Model, input: &mut ByteReader<'_>) -> Result<()> {
+    for form in 0..FORMS {
+        if input.bool()? {
+            let loaded = AeroInfluence::load_from(model.structure().wheel(), input)?;
+            model.structure_mut().aero_mut()[form] = loaded.map(Arc::new);
         }
-        Ok(())
     }
+    Ok(())
 }
 
 impl Structure {

@@ -128,21 +128,15 @@ impl Structure {
     }
 }
 
-impl Model {
-    /// The model whose stiffness has natural modes: a complex symmetric stiffness as its Hermitian part and structural
-    /// damping. Its equations are the same.
-    ///
-    /// # Errors
-    /// `Unsupported` where the structural matrix has another form; `OutOfMemory`.
-    #[doc(hidden)]
-    pub fn with_separate_loss(&self) -> Result<Cow<'_, Self>> {
-        if !self.structure().has_complex_stiffness() {
-            return Ok(Cow::Borrowed(self));
-        }
-        let mut model = self.try_clone()?;
-        model.structure_mut().separate_complex_stiffness()?;
-        Ok(Cow::Owned(model))
+/// The model whose stiffness has natural modes.
+#[doc(hidden)]
+pub(crate) fn with_separate_loss(model: &Model) -> Result<Cow<'_, Model>> {
+    if !model.structure().has_complex_stiffness() {
+        return Ok(Cow::Borrowed(model));
     }
+    let mut model = model.try_clone()?;
+    model.structure_mut().separate_complex_stiffness()?;
+    Ok(Cow::Owned(model))
 }
 
 /// Splits all blocks of a matrix. The split block to the previous sector is the mirror of the one to the next sector.

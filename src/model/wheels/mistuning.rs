@@ -55,130 +55,123 @@ pub enum Mistuning<'a> {
     Force,
 }
 
-impl Model {
-    /// Mistunes a wheel by a value δ_s for each sector s; `sector` is the cyclic model of which [`Model::wheel`] made
-    /// it. Changes of matrices refer to the cyclic model, and several calls add up; loads and forces are multiplied.
-    ///
-    /// # Errors
-    /// `Dimension` for another number of sectors, or another model; `NotFinite`; `Index`; `Argument` or `Unsupported`,
-    /// naming what is out of range. The wheel is then unchanged.
-    pub fn mistune(&mut self, sector: &Self, what: &Mistuning<'_>, delta: &[f64]) -> Result<()> {
-        let sectors = sector.structure().sectors();
-        if delta.len() != sectors {
-            return fail!(
-                Dimension,
-                "{} numbers delta, needs one for each of {sectors} sectors",
-                delta.len()
-            );
-        }
-        if let Some(s) = delta.iter().position(|d| !d.is_finite()) {
-            return fail!(NotFinite, "delta[{s}] = {}, needs a finite number", delta[s]);
-        }
-        let contacts = sector.contacts().len();
-        let fits = sectors > 1 && self.structure().sectors() == 1 && self.ndof() == sectors * sector.ndof();
-        if !fits || self.structure().ndof() != sectors * sector.structure().ndof() {
-            return fail!(
-                Dimension,
-                "the wheel has {} degrees of freedom, which are not {sectors} sectors with {}",
-                self.ndof(),
-                sector.ndof()
-            );
-        }
-        let has_damping = matches!(
-            what,
-            Mistuning::Blade(BladeProperty::Damping, _)
-                | Mistuning::Matrix(MatrixKind::Damping | MatrixKind::Structural, _)
+/// Mistunes a wheel by a value δ_s for each sector s.
+pub(crate) fn mistune(model: &mut Model, sector: &Model, what: &Mistuning<'_>, delta: &[f64]) -> Result<()> {
+    let sectors = sector.structure().sectors();
+    if delta.len() != sectors {
+        return fail!(
+            Dimension,
+            "{} numbers delta, needs one for each of {sectors} sectors",
+            delta.len()
         );
-        self.check_sector(
-            sector,
-            if has_damping {
-                SectorUse::DampingPattern
-            } else {
-                SectorUse::Pattern
-            },
-        )?;
-        let mut changed = self.try_clone()?;
-        match *what {
-            Mistuning::Blade(property, dofs) => {
-                // A stiffness, mass or damping below zero has no sense.
-                if let Some(s) = delta.iter().position(|&d| d < -1.0) {
-                    return fail!(
-                        Argument,
-                        "delta[{s}] = {}, needs at least -1: a share, not a per cent",
-                        delta[s]
-                    );
-                }
-                let (kind, entries) = sector.structure().of_blade(property, dofs)?;
-                let share = |d: f64| {
-                    if property == BladeProperty::Frequency {
-                        d * (2.0 + d)
-                    } else {
-                        d
-                    }
-                };
-                changed.add_to_sectors(kind, &entries, sector, |s| share(delta[s]))?;
+    }
+    if let Some(s) = delta.iter().position(|d| !d.is_finite()) {
+        return fail!(NotFinite, "delta[{s}] = {}, needs a finite number", delta[s]);
+    }
+    let contacts = sector.contacts().len();
+    let fits = sectors > 1 && model.structure().sectors() == 1 && model.ndof() == sectors * sector.ndof();
+    if !fits || model.structure().ndof() != sectors * sector.structure().ndof() {
+        return fail!(
+            Dimension,
+            "the wheel has {} degrees of freedom, which are not {sectors} sectors with {}",
+            model.ndof(),
+            sector.ndof()
+        );
+    }
+    let has_damping = matches!(
+        what,
+        Mistuning::Blade(BladeProperty::Damping, _)
+            | Mistuning::Matrix(MatrixKind::Damping | MatrixKind::Structural, _)
+    );
+    model.check_sector(
+        sector,
+        if has_damping {
+            SectorUse::DampingPattern
+        } else {
+            SectorUse::Pattern
+        },
+    )?;
+    let mut changed = model.try_clone()?;
+    match *what {
+        Mistuning::Blade(property, dofs) => {
+            // A stiffness, mass or damping below zero has no sense.
+            if let Some(s) = delta.iter().position(|&d| d < -1.0) {
+                return fail!(
+                    Argument,
+                    "delta[{s}] = {}, needs at least -1: a share, not a per cent",
+                    delta[s]
+                );
             }
-            Mistuning::Matrix(kind, direction) => {
-                let entries = sector.structure().of_direction(kind, direction)?;
-                changed.add_to_sectors(kind, &entries, sector, |s| delta[s])?;
+            let (kind, entries) = sector.structure().of_blade(property, dofs)?;
+            let share = |d: f64| {
+                if property == BladeProperty::Frequency {
+                    d * (2.0 + d)
+                } else {
+                    d
+                }
+            };
+            add_to_sectors(&mut changed, kind, &entries, sector, |s| share(delta[s]))?;
+        }
+        Mistuning::Matrix(kind, direction) => {
+            let entries = sector.structure().of_direction(kind, direction)?;
+            add_to_sectors(&mut changed, kind, &entries, sector, |s| delta[s])?;
+        }
+        Mistuning::Preload(id) => {
+            if let Some(id) = id.filter(|&id| id >= contacts) {
+                return fail!(Index, "contact id = {id}, but a sector has {contacts} contacts");
             }
-            Mistuning::Preload(id) => {
-                if let Some(id) = id.filter(|&id| id >= contacts) {
-                    return fail!(Index, "contact id = {id}, but a sector has {contacts} contacts");
-                }
-                if self.contacts().len() != contacts * sectors {
-                    return fail!(Dimension, "the wheel has other contacts than {sectors} sectors");
-                }
-                for c in 0..contacts {
-                    let without = sector.contacts().get(c).is_some_and(|c| c.without_load().is_some());
-                    if id.map_or(without, |id| id != c) {
-                        continue;
-                    }
-                    for (s, d) in delta.iter().enumerate() {
-                        let at = s * contacts + c;
-                        if let Some((preload, per_speed2, _)) = self.given_load(at) {
-                            changed.set_preload_at_speed(at, preload * (1.0 + d), per_speed2 * (1.0 + d))?;
-                        }
-                    }
-                }
+            if model.contacts().len() != contacts * sectors {
+                return fail!(Dimension, "the wheel has other contacts than {sectors} sectors");
             }
-            Mistuning::Force => {
-                let n = sector.ndof();
-                changed.excitation.scale_each(|dof| 1.0 + delta[dof / n]);
+            for c in 0..contacts {
+                let without = sector.contacts().get(c).is_some_and(|c| c.without_load().is_some());
+                if id.map_or(without, |id| id != c) {
+                    continue;
+                }
+                for (s, d) in delta.iter().enumerate() {
+                    let at = s * contacts + c;
+                    if let Some((preload, per_speed2, _)) = model.given_load(at) {
+                        changed.set_preload_at_speed(at, preload * (1.0 + d), per_speed2 * (1.0 + d))?;
+                    }
+                }
             }
         }
-        *self = changed;
-        Ok(())
+        Mistuning::Force => {
+            let n = sector.ndof();
+            changed.excitation.scale_each(|dof| 1.0 + delta[dof / n]);
+        }
     }
+    *model = changed;
+    Ok(())
+}
 
-    /// Adds a multiple of entries of sector 0, over the independent degrees of freedom of the wheel, for each sector.
-    fn add_to_sectors(
-        &mut self,
-        kind: MatrixKind,
-        entries: &Entries,
-        sector: &Self,
-        factor: impl Fn(usize) -> f64,
-    ) -> Result<()> {
-        let (n, sectors) = (sector.structure().ndof(), sector.structure().sectors());
-        let all = n * sectors;
-        let mut factors = try_vec(sectors, 0.0, CONTEXT)?;
-        for (s, to) in factors.iter_mut().enumerate() {
-            *to = factor(s);
-        }
-        if entries.is_empty() || factors.iter().all(|f| *f == 0.0) {
-            return Ok(());
-        }
-        let of_sector = Csc::from_triplets(all, all, try_copy(entries, CONTEXT)?)?;
-        let added = around(&symmetrised(of_sector, MIRROR_ROUNDING)?, n, &factors)?;
-        let blocks = self.changed_structure().blocks_mut(kind)?;
-        let added = KeptMatrix::new(added)?;
-        let one = Complex64::ONE;
-        blocks.own = Some(match &blocks.own {
-            Some(own) => KeptMatrix::new(Csc::sum(all, &[(one, own, Form::Plain), (one, &added, Form::Plain)])?)?,
-            None => added,
-        });
-        Ok(())
+/// Adds a multiple of entries of sector 0, over the independent degrees of freedom of the wheel, for each sector.
+fn add_to_sectors(
+    model: &mut Model,
+    kind: MatrixKind,
+    entries: &Entries,
+    sector: &Model,
+    factor: impl Fn(usize) -> f64,
+) -> Result<()> {
+    let (n, sectors) = (sector.structure().ndof(), sector.structure().sectors());
+    let all = n * sectors;
+    let mut factors = try_vec(sectors, 0.0, CONTEXT)?;
+    for (s, to) in factors.iter_mut().enumerate() {
+        *to = factor(s);
     }
+    if entries.is_empty() || factors.iter().all(|f| *f == 0.0) {
+        return Ok(());
+    }
+    let of_sector = Csc::from_triplets(all, all, try_copy(entries, CONTEXT)?)?;
+    let added = around(&symmetrised(of_sector, MIRROR_ROUNDING)?, n, &factors)?;
+    let blocks = model.changed_structure().blocks_mut(kind)?;
+    let added = KeptMatrix::new(added)?;
+    let one = Complex64::ONE;
+    blocks.own = Some(match &blocks.own {
+        Some(own) => KeptMatrix::new(Csc::sum(all, &[(one, own, Form::Plain), (one, &added, Form::Plain)])?)?,
+        None => added,
+    });
+    Ok(())
 }
 
 impl Structure {

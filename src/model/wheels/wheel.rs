@@ -10,14 +10,13 @@ use crate::error::{Result, fail, try_push};
 use crate::interrupt::Interrupt;
 use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
 use crate::linalg::sparse_storage::sparse::{Csc, Form, Symmetry};
-use crate::model::Model;
-use crate::model::copy;
 use crate::model::excitation::Force;
 use crate::model::matrices::aero::AeroForm;
 use crate::model::matrices::degree_map::DegreeMap;
 use crate::model::matrices::speed::SpeedLoad;
 use crate::model::matrices::spring::Spring;
 use crate::model::matrices::structure::{MAX_DOF, MatrixKind, Structure};
+use crate::model::{Model, copy};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the wheel";
@@ -35,81 +34,71 @@ const KINDS: [MatrixKind; 6] = [
     MatrixKind::StiffnessSpeed2,
 ];
 
-impl Model {
-    /// The whole wheel of a cyclic model as a plain one, a model for every analysis: degree of freedom i of sector s is
-    /// s·n + i, contact c is s·m + c. The engine order is in the phases of the forces. Forces of engine order e that belong
-    /// to one speed are those in harmonic e under engine order 1.
-    ///
-    /// # Errors
-    /// `Unsupported` for a plain model, complex aerodynamic coefficients, and contacts and springs with another sector whose axes
-    /// are turned; `Argument` when a nodal diameter was not given; `Dimension` for a wheel that is too large; `OutOfMemory`.
-    pub fn wheel(&self) -> Result<Self> {
-        let interrupt = Interrupt::none();
-        self.check_axes()?;
-        let (n, sectors) = (self.ndof(), self.structure().sectors());
-        let mut wheel = Self::new(1)?;
-        wheel.structure = self.structure().whole(&interrupt)?;
-        wheel.structure.sector = Some(self.sector_digest());
-        for s in 0..sectors {
-            for contact in self.contacts() {
-                try_push(&mut wheel.contacts, placed(contact, s, n, sectors)?, CONTEXT)?;
-            }
-            for spring in self.springs() {
-                let next = neighbour(s, spring.sector_offset, sectors);
-                let spring = Spring {
-                    dof_a: spring.dof_a.map(|dof| s * n + dof),
-                    dof_b: spring.dof_b.map(|dof| next * n + dof),
-                    sector_offset: 0,
-                    ..*spring
-                };
-                try_push(&mut wheel.springs, spring, CONTEXT)?;
-            }
-            for load in self.speed_loads() {
-                let load = SpeedLoad {
-                    contact: s * self.contacts().len() + load.contact,
-                    ..*load
-                };
-                try_push(&mut wheel.speed_loads, load, CONTEXT)?;
-            }
-            for force in self.excitation().forces() {
-                let force = Force {
-                    dof: s * n + force.dof,
-                    value: force.value * self.structure().phase(force.harmonic, s as i64),
-                    ..*force
-                };
-                wheel.excitation.restore(n * sectors, force)?;
-            }
+/// The whole wheel of a cyclic model as a plain one, a model for every analysis.
+pub(crate) fn wheel(model: &Model) -> Result<Model> {
+    let interrupt = Interrupt::none();
+    check_axes(model)?;
+    let (n, sectors) = (model.ndof(), model.structure().sectors());
+    let mut wheel = Model::new(1)?;
+    wheel.structure = model.structure().whole(&interrupt)?;
+    wheel.structure.sector = Some(model.sector_digest());
+    for s in 0..sectors {
+        for contact in model.contacts() {
+            try_push(&mut wheel.contacts, placed(contact, s, n, sectors)?, CONTEXT)?;
         }
-        Ok(wheel)
+        for spring in model.springs() {
+            let next = neighbour(s, spring.sector_offset, sectors);
+            let spring = Spring {
+                dof_a: spring.dof_a.map(|dof| s * n + dof),
+                dof_b: spring.dof_b.map(|dof| next * n + dof),
+                sector_offset: 0,
+                ..*spring
+            };
+            try_push(&mut wheel.springs, spring, CONTEXT)?;
+        }
+        for load in model.speed_loads() {
+            let load = SpeedLoad {
+                contact: s * model.contacts().len() + load.contact,
+                ..*load
+            };
+            try_push(&mut wheel.speed_loads, load, CONTEXT)?;
+        }
+        for force in model.excitation().forces() {
+            let force = Force {
+                dof: s * n + force.dof,
+                value: force.value * model.structure().phase(force.harmonic, s as i64),
+                ..*force
+            };
+            wheel.excitation.restore(n * sectors, force)?;
+        }
     }
+    Ok(wheel)
 }
 
-impl Model {
-    /// Refuses contacts with a sector whose Cartesian axes are turned: the side in that sector would need its own
-    /// direction.
-    fn check_axes(&self) -> Result<()> {
-        let Some(faces) = self.structure().degrees().faces() else {
-            return Ok(());
-        };
-        let contacts = self.contacts().iter().enumerate();
-        let contacts = contacts
-            .filter(|(_, contact)| contact.dof_b.iter().any(Option::is_some))
-            .map(|(i, contact)| ("contact", i, contact.sector_offset));
-        let springs = self.springs().iter().enumerate();
-        let springs = springs
-            .filter(|(_, spring)| spring.dof_b.is_some())
-            .map(|(i, spring)| ("spring", i, spring.sector_offset));
-        for (what, i, offset) in contacts.chain(springs) {
-            if faces.turn_of(offset).is_some() {
-                return fail!(
-                    Unsupported,
-                    "the wheel of a sector whose {what} {i} has sector_offset = {offset} in a Cartesian frame, whose axes are \
-                     turned there; use a cylindrical frame"
-                );
-            }
+/// Refuses contacts with a sector whose Cartesian axes are turned: the side in that sector would need its own
+/// direction.
+fn check_axes(model: &Model) -> Result<()> {
+    let Some(faces) = model.structure().degrees().faces() else {
+        return Ok(());
+    };
+    let contacts = model.contacts().iter().enumerate();
+    let contacts = contacts
+        .filter(|(_, contact)| contact.dof_b.iter().any(Option::is_some))
+        .map(|(i, contact)| ("contact", i, contact.sector_offset));
+    let springs = model.springs().iter().enumerate();
+    let springs = springs
+        .filter(|(_, spring)| spring.dof_b.is_some())
+        .map(|(i, spring)| ("spring", i, spring.sector_offset));
+    for (what, i, offset) in contacts.chain(springs) {
+        if faces.turn_of(offset).is_some() {
+            return fail!(
+                Unsupported,
+                "the wheel of a sector whose {what} {i} has sector_offset = {offset} in a Cartesian frame, whose axes are \
+                 turned there; use a cylindrical frame"
+            );
         }
-        Ok(())
     }
+    Ok(())
 }
 
 impl Structure {
