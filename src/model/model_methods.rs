@@ -132,7 +132,7 @@ impl Model {
     }
 
     pub(crate) fn save_aero(&self, out: &mut ByteWriter<'_>) {
-        aero::save_aero(self, out)
+        aero::save_aero(self, out);
     }
 
     pub(crate) fn load_aero(&mut self, input: &mut ByteReader<'_>) -> Result<()> {
@@ -195,7 +195,7 @@ impl Model {
     /// Sets contacts whose load depends on the speed to the load at the present speed; with a speed tied to the
     /// frequency, to a positive load that represents all.
     pub(crate) fn apply_speed(&mut self) {
-        rotation::apply_speed(self)
+        rotation::apply_speed(self);
     }
 
     /// Derivative ∂ln|N|/∂ω of a normal load that is tied to the frequency.

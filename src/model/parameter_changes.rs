@@ -87,7 +87,7 @@ pub(crate) fn add_direction(
     if factor == 0.0 {
         return Ok(());
     }
-    model.changed_structure().add_direction(which, direction, factor)
+    add_to_structure(model.changed_structure(), which, direction, factor)
 }
 
 /// Multiplies the mass, damping or stiffness matrix with its couplings.
@@ -96,7 +96,7 @@ pub(crate) fn scale_matrix(model: &mut Model, which: MatrixKind, factor: f64) ->
     if factor.to_bits() == 1.0_f64.to_bits() {
         return Ok(());
     }
-    model.changed_structure().scale_matrix(which, factor)
+    scale_structure(model.changed_structure(), which, factor)
 }
 
 /// A copy with its own list of reduced waves.
@@ -106,54 +106,57 @@ pub(crate) fn separate_clone(model: &Model) -> Result<Model> {
     Ok(copy)
 }
 
-impl Structure {
-    fn add_direction(&mut self, which: MatrixKind, direction: &MatrixView<'_>, factor: f64) -> Result<()> {
-        let given = direction.copy_in("direction", self.degrees.given())?;
-        let added = if self.degrees.faces().is_some() {
-            sector_matrices::blocks(&self.degrees, &given, direction.part.symmetry())?
-        } else {
-            Blocks {
-                own: Some(KeptMatrix::new(of_independent(&self.degrees, given)?)?),
-                ..Blocks::default()
-            }
-        };
-        let n = self.ndof();
-        let blocks = self.blocks_mut(which)?;
-        if blocks.diameters.is_empty() {
-            // A coupling to the previous sector that follows from that to the next one is added with it.
-            let explicit = blocks.previous.is_some() || added.previous.is_some();
-            if explicit && blocks.previous.is_none() {
-                blocks.previous = transposed(n, blocks.next.as_ref())?;
-            }
-            let previous = match (&added.previous, explicit) {
-                (None, true) => transposed(n, added.next.as_ref())?,
-                (given, _) => given.as_ref().map(KeptMatrix::try_clone).transpose()?,
-            };
-            add(n, &mut blocks.own, added.own.as_ref(), factor)?;
-            add(n, &mut blocks.next, added.next.as_ref(), factor)?;
-            add(n, &mut blocks.previous, previous.as_ref(), factor)?;
-        } else {
-            for matrix in blocks.diameters.iter_mut().filter(|matrix| matrix.is_some()) {
-                add(n, matrix, added.own.as_ref(), factor)?;
-            }
+fn add_to_structure(
+    structure: &mut Structure,
+    which: MatrixKind,
+    direction: &MatrixView<'_>,
+    factor: f64,
+) -> Result<()> {
+    let given = direction.copy_in("direction", structure.degrees.given())?;
+    let added = if structure.degrees.faces().is_some() {
+        sector_matrices::blocks(&structure.degrees, &given, direction.part.symmetry())?
+    } else {
+        Blocks {
+            own: Some(KeptMatrix::new(of_independent(&structure.degrees, given)?)?),
+            ..Blocks::default()
         }
-        Ok(())
+    };
+    let n = structure.ndof();
+    let blocks = structure.blocks_mut(which)?;
+    if blocks.diameters.is_empty() {
+        // A coupling to the previous sector that follows from that to the next one is added with it.
+        let explicit = blocks.previous.is_some() || added.previous.is_some();
+        if explicit && blocks.previous.is_none() {
+            blocks.previous = transposed(n, blocks.next.as_ref())?;
+        }
+        let previous = match (&added.previous, explicit) {
+            (None, true) => transposed(n, added.next.as_ref())?,
+            (given, _) => given.as_ref().map(KeptMatrix::try_clone).transpose()?,
+        };
+        add(n, &mut blocks.own, added.own.as_ref(), factor)?;
+        add(n, &mut blocks.next, added.next.as_ref(), factor)?;
+        add(n, &mut blocks.previous, previous.as_ref(), factor)?;
+    } else {
+        for matrix in blocks.diameters.iter_mut().filter(|matrix| matrix.is_some()) {
+            add(n, matrix, added.own.as_ref(), factor)?;
+        }
     }
+    Ok(())
+}
 
-    fn scale_matrix(&mut self, which: MatrixKind, factor: f64) -> Result<()> {
-        let blocks = self.blocks_mut(which)?;
-        let given = [&mut blocks.own, &mut blocks.next, &mut blocks.previous].into_iter();
-        for matrix in given.chain(&mut blocks.diameters).flatten() {
+fn scale_structure(structure: &mut Structure, which: MatrixKind, factor: f64) -> Result<()> {
+    let blocks = structure.blocks_mut(which)?;
+    let given = [&mut blocks.own, &mut blocks.next, &mut blocks.previous].into_iter();
+    for matrix in given.chain(&mut blocks.diameters).flatten() {
+        matrix.scale(factor);
+    }
+    if which == MatrixKind::Damping {
+        structure.rayleigh = (structure.rayleigh.0 * factor, structure.rayleigh.1 * factor);
+        for matrix in structure.modal_damping.iter_mut().flatten() {
             matrix.scale(factor);
         }
-        if which == MatrixKind::Damping {
-            self.rayleigh = (self.rayleigh.0 * factor, self.rayleigh.1 * factor);
-            for matrix in self.modal_damping.iter_mut().flatten() {
-                matrix.scale(factor);
-            }
-        }
-        Ok(())
     }
+    Ok(())
 }
 
 fn transposed(n: usize, matrix: Option<&KeptMatrix>) -> Result<Option<KeptMatrix>> {

@@ -20,7 +20,7 @@ pub(crate) fn set_aero(
     offsets: &[i64],
     form: AeroForm,
 ) -> Result<()> {
-    let given = AeroInfluence::new(model.structure().wheel(), dofs, offsets, coefficients)?;
+    let given = AeroInfluence::new(wheel(model.structure()), dofs, offsets, coefficients)?;
     model.changed_structure().aero_mut()[form as usize] = given.map(Arc::new);
     Ok(())
 }
@@ -39,76 +39,61 @@ pub(crate) fn save_aero(model: &Model, out: &mut ByteWriter<'_>) {
 pub(crate) fn load_aero(model: &mut Model, input: &mut ByteReader<'_>) -> Result<()> {
     for form in 0..FORMS {
         if input.bool()? {
-            let loaded = AeroInfluence::load_from(model.structure().wheel(), input)?;
+            let loaded = AeroInfluence::load_from(wheel(model.structure()), input)?;
             model.structure_mut().aero_mut()[form] = loaded.map(Arc::new);
         }
     }
     Ok(())
 }
 
-impl Structure {
-    /// Map of the degrees of freedom, and number of sectors.
-    fn wheel(&self) -> (&DegreeMap, usize) {
-        (self.degrees(), self.sectors())
-    }
+/// Map of the degrees of freedom, and number of sectors.
+fn wheel(structure: &Structure) -> (&DegreeMap, usize) {
+    (structure.degrees(), structure.sectors())
+}
 
-    /// Whether aerodynamic forces act.
-    pub fn has_aero(&self) -> bool {
-        self.aero().iter().any(Option::is_some)
-    }
-
-    /// Whether aerodynamic forces per displacement act.
-    pub fn has_aero_stiffness(&self) -> bool {
-        self.aero()[AeroForm::Displacement as usize].is_some()
-    }
-
-    /// The matrix −A(d) of the influence on the left-hand side, for the residue d of a wave; `None` without influence.
-    pub(crate) fn aero_matrix(&self, form: AeroForm, residue: usize, real: bool) -> Result<Option<Csc>> {
-        let Some(influence) = &self.aero()[form as usize] else {
-            return Ok(None);
-        };
-        let mut entries = Vec::new();
-        influence.visit(self.wheel(), |offset, p, q, c| {
-            try_push(
-                &mut entries,
-                (p, q, -c * self.wave_phase(residue as i64, offset)),
-                CONTEXT,
-            )
-        })?;
-        let mut matrix = Csc::from_triplets(self.ndof(), self.ndof(), entries)?;
-        if real {
-            for v in &mut matrix.values {
-                v.im = 0.0;
-            }
+/// The matrix −A(d) of the influence on the left-hand side, for the residue d of a wave.
+pub(crate) fn aero_matrix(structure: &Structure, form: AeroForm, residue: usize, real: bool) -> Result<Option<Csc>> {
+    let Some(influence) = &structure.aero()[form as usize] else {
+        return Ok(None);
+    };
+    let mut entries = Vec::new();
+    influence.visit(wheel(structure), |offset, p, q, c| {
+        try_push(
+            &mut entries,
+            (p, q, -c * structure.wave_phase(residue as i64, offset)),
+            CONTEXT,
+        )
+    })?;
+    let mut matrix = Csc::from_triplets(structure.ndof(), structure.ndof(), entries)?;
+    if real {
+        for v in &mut matrix.values {
+            v.im = 0.0;
         }
-        Ok(Some(matrix))
     }
+    Ok(Some(matrix))
+}
 
-    /// The influence between the sectors of [`Self::repeating_sectors`], on the left-hand side.
-    ///
-    /// # Errors
-    /// `Unsupported` for complex coefficients.
-    pub(crate) fn aero_around(&self, form: AeroForm, interrupt: &Interrupt<'_>) -> Result<Option<Csc>> {
-        let Some(influence) = &self.aero()[form as usize] else {
-            return Ok(None);
-        };
-        if !influence.is_real() {
-            return fail!(
-                Unsupported,
-                "the coefficients of the aerodynamic influence are complex, which means nothing in time: at the angular \
-                 frequency omega, c' + i c'' is c' per displacement and c''/omega per velocity"
-            );
-        }
-        let (ndof, sectors) = (self.ndof(), self.repeating_sectors());
-        let mut entries = Vec::new();
-        influence.visit(self.wheel(), |offset, p, q, c| {
-            interrupt.check_before(sectors as u64)?;
-            for s in 0..sectors {
-                let to = (s as i64 + offset).rem_euclid(sectors as i64) as usize;
-                try_push(&mut entries, (s * ndof + p, to * ndof + q, -c), CONTEXT)?;
-            }
-            Ok(())
-        })?;
-        Ok(Some(Csc::from_triplets(ndof * sectors, ndof * sectors, entries)?))
+/// The influence between the sectors of [`Structure::repeating_sectors`], on the left-hand side.
+pub(crate) fn aero_around(structure: &Structure, form: AeroForm, interrupt: &Interrupt<'_>) -> Result<Option<Csc>> {
+    let Some(influence) = &structure.aero()[form as usize] else {
+        return Ok(None);
+    };
+    if !influence.is_real() {
+        return fail!(
+            Unsupported,
+            "the coefficients of the aerodynamic influence are complex, which means nothing in time: at the angular \
+             frequency omega, c' + i c'' is c' per displacement and c''/omega per velocity"
+        );
     }
+    let (ndof, sectors) = (structure.ndof(), structure.repeating_sectors());
+    let mut entries = Vec::new();
+    influence.visit(wheel(structure), |offset, p, q, c| {
+        interrupt.check_before(sectors as u64)?;
+        for s in 0..sectors {
+            let to = (s as i64 + offset).rem_euclid(sectors as i64) as usize;
+            try_push(&mut entries, (s * ndof + p, to * ndof + q, -c), CONTEXT)?;
+        }
+        Ok(())
+    })?;
+    Ok(Some(Csc::from_triplets(ndof * sectors, ndof * sectors, entries)?))
 }

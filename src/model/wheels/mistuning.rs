@@ -174,127 +174,146 @@ fn add_to_sectors(
     Ok(())
 }
 
-impl Structure {
-    /// Entries of a matrix that the caller gives for a sector.
-    pub(crate) fn of_direction(&self, kind: MatrixKind, direction: &MatrixView<'_>) -> Result<Entries> {
-        if matches!(kind, MatrixKind::Gyroscopic | MatrixKind::StiffnessSpeed2) {
-            return fail!(
-                Unsupported,
-                "mistuning of the {} matrix; needs mass, damping, stiffness or structural damping",
-                kind.name()
-            );
-        }
-        if kind == MatrixKind::Mass && direction.part == Part::General {
-            return fail!(Argument, "a mass is symmetric, but its direction was passed as GENERAL");
-        }
-        of_both_sectors(self.degrees(), &direction.copy_in("direction", self.degrees().given())?)
+/// Entries of a matrix that the caller gives for a sector.
+pub(crate) fn of_direction(structure: &Structure, kind: MatrixKind, direction: &MatrixView<'_>) -> Result<Entries> {
+    if matches!(kind, MatrixKind::Gyroscopic | MatrixKind::StiffnessSpeed2) {
+        return fail!(
+            Unsupported,
+            "mistuning of the {} matrix; needs mass, damping, stiffness or structural damping",
+            kind.name()
+        );
     }
+    if kind == MatrixKind::Mass && direction.part == Part::General {
+        return fail!(Argument, "a mass is symmetric, but its direction was passed as GENERAL");
+    }
+    of_both_sectors(
+        structure.degrees(),
+        &direction.copy_in("direction", structure.degrees().given())?,
+    )
+}
 
-    /// The matrix of a property of the blade of sector 0 over the degrees of freedom of the wheel.
-    pub(crate) fn of_blade(&self, property: BladeProperty, dofs: &[usize]) -> Result<(MatrixKind, Entries)> {
-        let n = self.ndof();
-        // Place of an independent degree of freedom in the blade.
-        let mut place = try_vec(n, None, CONTEXT)?;
-        let mut blade = Vec::new();
-        for (k, &dof) in dofs.iter().enumerate() {
-            if dof >= self.degrees().given() {
-                return fail!(Index, "dofs[{k}] = {dof}, needs 0 .. {}", self.degrees().given() - 1);
-            }
-            if self.degrees().image(dof).0 != 0 {
-                return fail!(
-                    Argument,
-                    "dofs[{k}] = {dof} is on the right face, which the next sector moves; give that of the left face there"
-                );
-            }
-            let Some(number) = self.degrees().number(dof) else {
-                continue;
-            };
-            if place[number].is_some() {
-                return fail!(Argument, "dofs[{k}] = {dof} is there twice");
-            }
-            place[number] = Some(blade.len());
-            try_push(&mut blade, number, CONTEXT)?;
-        }
-        if blade.is_empty() {
-            return fail!(Argument, "a blade has no degree of freedom that moves");
-        }
-        let interrupt = Interrupt::none();
-        let ring = self.around_ring()?;
-        let within = |a: &Csc| -> Result<Entries> {
-            let mut entries = Vec::new();
-            for (j, &column) in blade.iter().enumerate() {
-                for (i, v) in a.column(column) {
-                    if let Some(i) = place.get(i).copied().flatten() {
-                        try_push(&mut entries, (i, j, v), CONTEXT)?;
-                    }
-                }
-            }
-            Ok(entries)
-        };
-        if property == BladeProperty::Mass {
-            let mut entries = within(&ring.given_around(MatrixKind::Mass, &interrupt)?)?;
-            for (i, j, _) in &mut entries {
-                (*i, *j) = (blade[*i], blade[*j]);
-            }
-            return Ok((MatrixKind::Mass, entries));
-        }
-        let stiffness = ring.given_around(MatrixKind::Stiffness, &interrupt)?;
-        let (_, _, gap) = stiffness.worst_pair(Symmetry::Plain);
-        if gap > MIRROR_ROUNDING * stiffness.max_abs() {
+/// Independent degrees of freedom of the blade of sector 0, and the place of each degree of freedom of the sector among them.
+struct Blade {
+    numbers: Vec<usize>,
+    place: Vec<Option<usize>>,
+}
+
+fn blade_of(structure: &Structure, dofs: &[usize]) -> Result<Blade> {
+    let mut place = try_vec(structure.ndof(), None, CONTEXT)?;
+    let mut numbers = Vec::new();
+    for (k, &dof) in dofs.iter().enumerate() {
+        if dof >= structure.degrees().given() {
             return fail!(
-                Unsupported,
-                "the stiffness is not symmetric: the share of a blade is unknown; give a direction"
+                Index,
+                "dofs[{k}] = {dof}, needs 0 .. {}",
+                structure.degrees().given() - 1
             );
         }
-        let nb = blade.len();
-        let mut root = Vec::new();
-        for &column in &blade {
-            for (i, _) in stiffness.column(column) {
-                if place.get(i).copied().flatten().is_none() {
-                    try_push(&mut root, i, CONTEXT)?;
-                }
-            }
-        }
-        root.sort_unstable();
-        root.dedup();
-        let nr = root.len();
-        if nb.saturating_mul(nr) > LARGEST_ATTACHMENT {
+        if structure.degrees().image(dof).0 != 0 {
             return fail!(
-                Unsupported,
-                "a blade of {nb} degrees of freedom with {nr} where it is attached, needs a product of at most {LARGEST_ATTACHMENT}; give \
-                 a direction"
+                Argument,
+                "dofs[{k}] = {dof} is on the right face, which the next sector moves; give that of the left face there"
             );
         }
-        // X = K_bb⁻¹ K_br: y = x_b + X x_r.
-        let own = Csc::from_triplets(nb, nb, within(&stiffness)?)?;
-        let mut x = try_vec(nb * nr, Complex64::ZERO, CONTEXT)?;
-        for (b, &column) in blade.iter().enumerate() {
-            for (i, v) in stiffness.column(column) {
-                if let Ok(r) = root.binary_search(&i) {
-                    x[r * nb + b] = v;
-                }
-            }
-        }
-        if nr > 0 {
-            let mut factor = Factor::new(&own, nr)?;
-            factor.factor(&own, &interrupt)?;
-            factor.solve(&mut x, false, &interrupt)?;
-        }
-        let (kind, form) = if property == BladeProperty::Damping {
-            let (alpha, beta) = self.rayleigh;
-            let mut terms = Vec::new();
-            let given = ring.given_around(MatrixKind::Damping, &interrupt)?;
-            let mass = ring.given_around(MatrixKind::Mass, &interrupt)?;
-            for (factor, a) in [(1.0, &given), (alpha, &mass), (beta, &stiffness)] {
-                try_push(&mut terms, (Complex64::from(factor), a, Form::Plain), CONTEXT)?;
-            }
-            let damping = Csc::sum(n * self.sectors(), &terms)?;
-            (MatrixKind::Damping, Csc::from_triplets(nb, nb, within(&damping)?)?)
-        } else {
-            (MatrixKind::Stiffness, own)
+        let Some(number) = structure.degrees().number(dof) else {
+            continue;
         };
-        Ok((kind, relative(&form, &x, &blade, &root)?))
+        if place[number].is_some() {
+            return fail!(Argument, "dofs[{k}] = {dof} is there twice");
+        }
+        place[number] = Some(numbers.len());
+        try_push(&mut numbers, number, CONTEXT)?;
     }
+    if numbers.is_empty() {
+        return fail!(Argument, "a blade has no degree of freedom that moves");
+    }
+    Ok(Blade { numbers, place })
+}
+
+/// The matrix of a property of the blade of sector 0 over the degrees of freedom of the wheel.
+pub(crate) fn of_blade(
+    structure: &Structure,
+    property: BladeProperty,
+    dofs: &[usize],
+) -> Result<(MatrixKind, Entries)> {
+    let n = structure.ndof();
+    let Blade { numbers: blade, place } = blade_of(structure, dofs)?;
+    let interrupt = Interrupt::none();
+    let ring = structure.around_ring()?;
+    let within = |a: &Csc| -> Result<Entries> {
+        let mut entries = Vec::new();
+        for (j, &column) in blade.iter().enumerate() {
+            for (i, v) in a.column(column) {
+                if let Some(i) = place.get(i).copied().flatten() {
+                    try_push(&mut entries, (i, j, v), CONTEXT)?;
+                }
+            }
+        }
+        Ok(entries)
+    };
+    if property == BladeProperty::Mass {
+        let mut entries = within(&ring.given_around(MatrixKind::Mass, &interrupt)?)?;
+        for (i, j, _) in &mut entries {
+            (*i, *j) = (blade[*i], blade[*j]);
+        }
+        return Ok((MatrixKind::Mass, entries));
+    }
+    let stiffness = ring.given_around(MatrixKind::Stiffness, &interrupt)?;
+    let (_, _, gap) = stiffness.worst_pair(Symmetry::Plain);
+    if gap > MIRROR_ROUNDING * stiffness.max_abs() {
+        return fail!(
+            Unsupported,
+            "the stiffness is not symmetric: the share of a blade is unknown; give a direction"
+        );
+    }
+    let nb = blade.len();
+    let mut root = Vec::new();
+    for &column in &blade {
+        for (i, _) in stiffness.column(column) {
+            if place.get(i).copied().flatten().is_none() {
+                try_push(&mut root, i, CONTEXT)?;
+            }
+        }
+    }
+    root.sort_unstable();
+    root.dedup();
+    let nr = root.len();
+    if nb.saturating_mul(nr) > LARGEST_ATTACHMENT {
+        return fail!(
+            Unsupported,
+            "a blade of {nb} degrees of freedom with {nr} where it is attached, needs a product of at most {LARGEST_ATTACHMENT}; give \
+             a direction"
+        );
+    }
+    // X = K_bb⁻¹ K_br: y = x_b + X x_r.
+    let own = Csc::from_triplets(nb, nb, within(&stiffness)?)?;
+    let mut x = try_vec(nb * nr, Complex64::ZERO, CONTEXT)?;
+    for (b, &column) in blade.iter().enumerate() {
+        for (i, v) in stiffness.column(column) {
+            if let Ok(r) = root.binary_search(&i) {
+                x[r * nb + b] = v;
+            }
+        }
+    }
+    if nr > 0 {
+        let mut factor = Factor::new(&own, nr)?;
+        factor.factor(&own, &interrupt)?;
+        factor.solve(&mut x, false, &interrupt)?;
+    }
+    let (kind, form) = if property == BladeProperty::Damping {
+        let (alpha, beta) = structure.rayleigh;
+        let mut terms = Vec::new();
+        let given = ring.given_around(MatrixKind::Damping, &interrupt)?;
+        let mass = ring.given_around(MatrixKind::Mass, &interrupt)?;
+        for (factor, a) in [(1.0, &given), (alpha, &mass), (beta, &stiffness)] {
+            try_push(&mut terms, (Complex64::from(factor), a, Form::Plain), CONTEXT)?;
+        }
+        let damping = Csc::sum(n * structure.sectors(), &terms)?;
+        (MatrixKind::Damping, Csc::from_triplets(nb, nb, within(&damping)?)?)
+    } else {
+        (MatrixKind::Stiffness, own)
+    };
+    Ok((kind, relative(&form, &x, &blade, &root)?))
 }
 
 /// Σ_s f_s A_s with the matrix A of sector 0, over the degrees of freedom of the wheel, moved to sector s; n degrees of freedom a
