@@ -3,13 +3,14 @@
 
 mod contraction;
 mod damped_step;
-mod deflated;
+pub(crate) mod deflated;
 mod last_evaluation;
 mod moved_tangent;
-mod null_direction;
+pub(crate) mod null_direction;
 
 use crate::continuation::Metric;
 use crate::continuation::corrector::contraction::{Contraction, Sizes};
+use crate::continuation::corrector::moved_tangent::slope_weights;
 use crate::error::{Error, Result, Status, try_extend, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::newton::linear_system::automatic::AutomaticSystem;
@@ -265,8 +266,9 @@ impl Corrector {
             let met = residual <= self.attainable() || foreseen.is_some();
             let converged = (met && near) || (round_off && !shrinks);
             if converged && iteration >= self.limits.min_iterations {
-                let slope = if iteration == 0 && !problem.has_kinks() {
-                    self.slope_weights(metric, row)
+                // Near-rigid contacts have matrices whose rounding would be amplified.
+                let slope = if iteration == 0 && !problem.has_kinks() && self.at.rounding == 0.0 {
+                    slope_weights(&self.matrices_at, norm(&self.memory.step), metric, row)
                 } else {
                     None
                 };

@@ -1,5 +1,6 @@
 //! The error of a point of a forced response.
 
+use crate::condense::blocks::more_harmonics;
 use crate::condense::by_modes::modal_rows::ModalRows;
 use crate::condense::by_modes::modal_table::ModalTable;
 use crate::condense::by_modes::wave_cache::SharedWaves;
@@ -467,7 +468,7 @@ impl<'a> ForcedEstimator<'a> {
             let fewer = below
                 .filter(|below| below.set().numbers().len() > own)
                 .unwrap_or(solved.condensed);
-            let shared = fewer.with_more_harmonics(self.model, &options, self.interrupt)?;
+            let shared = more_harmonics::with_more_harmonics(fewer, self.model, &options, self.interrupt)?;
             let condensed = if let Some(condensed) = shared {
                 condensed
             } else {

@@ -23,6 +23,7 @@ use crate::harmonics::extended_system::ExtendedSystem;
 use crate::interrupt::Interrupt;
 use crate::problem::Problem;
 use crate::problem::harmonic_balance::HarmonicBalance;
+use crate::problem::slip_forces;
 
 /// Error of a point over its change with twice the harmonics, where it falls as 1/H.
 /// Kind: tuned; measured on: not recorded.
@@ -77,7 +78,7 @@ fn lateness(
         let Some(exchange) = condensed.exchange_of(c) else {
             continue;
         };
-        if !system.problem.by_slip_limit(c, &mut load) {
+        if !slip_forces::by_slip_limit(&system.problem, c, &mut load) {
             continue;
         }
         let of_ring = exchange.ring / omega;
@@ -97,7 +98,7 @@ fn lateness(
             *x = -*x;
         }
         let (_, by_motion) = system.problem.observe(at, &change);
-        sum += late * (by_motion + system.problem.observed_by_slip_limit(c)).norm();
+        sum += late * (by_motion + slip_forces::observed_by_slip_limit(&system.problem, c)).norm();
     }
     Ok(Some(sum))
 }

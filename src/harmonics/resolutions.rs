@@ -1,5 +1,6 @@
 //! The equations of a run at the resolutions that it has used; one resolution is the current one.
 
+use crate::condense::blocks::reduction;
 use crate::condense::{Reduction, Resolution};
 use crate::continuation::Point;
 use crate::error::{Result, boxed, try_push};
@@ -81,7 +82,12 @@ impl<'a, E> Resolutions<'a, E> {
     /// Those of condensing the model.
     pub fn reduction(&self, model: &Model, solver: &SolverOptions, first: &Reduction) -> Result<Reduction> {
         let condensed = &self.levels.at(self.highest)?.condensed;
-        Ok(condensed.reduction_with(model, solver, first.held_by_contacts))
+        Ok(reduction::reduction_with(
+            condensed,
+            model,
+            solver,
+            first.held_by_contacts,
+        ))
     }
 
     /// A point of another resolution in the current harmonics, see [`transferred_point`].

@@ -113,68 +113,61 @@ pub struct DamperPlace {
     pub contacts: Range<usize>,
 }
 
-impl Model {
-    /// Adds a damper under platforms: a rigid body whose motions are new degrees of freedom after all others, with
-    /// the contacts of its faces and its centrifugal force. Matrices that are set later have the new size. In a
-    /// cyclic model each sector has one. Rayleigh damping applies to its mass and support as well.
-    ///
-    /// # Errors
-    /// `Argument`, `NotFinite` or `Index`, naming the field; `Dimension` for too many degrees of freedom. Nothing has then changed.
-    pub fn add_damper(&mut self, damper: &Damper<'_>) -> Result<DamperPlace> {
-        let inertia = damper.checked()?;
-        let mut model = self.try_clone()?;
-        let first = model.ndof();
-        model.extend(damper.motions)?;
-        let translations = if damper.motions == 3 { 2 } else { 3 };
-        for i in 0..damper.motions {
-            let is_turn = usize::from(i >= translations);
-            let inertia = match (i >= translations, damper.motions) {
-                (false, _) => damper.mass,
-                (true, 3) => inertia[2],
-                (true, _) => inertia[i - 3],
-            };
-            for (which, value) in [
-                (MatrixKind::Mass, inertia),
-                (MatrixKind::Stiffness, damper.support[is_turn]),
-                (MatrixKind::Damping, damper.support_damping[is_turn]),
-            ] {
-                model.add_on_diagonal(which, first + i, value)?;
-            }
-        }
-        if damper.mass * damper.orbit != 0.0 {
-            model.add_centrifugal(first + 1, damper.mass * damper.orbit)?;
-        }
-        let contacts = model.contacts().len();
-        for (i, face) in damper.faces.iter().enumerate() {
-            damper
-                .add_face(face, first, &mut model)
-                .map_err(|e| e.at(format_args!("faces[{i}]")))?;
-        }
-        *self = model;
-        Ok(DamperPlace {
-            dofs: first..self.ndof(),
-            contacts: contacts..self.contacts().len(),
-        })
-    }
-
-    /// Adds a number to an entry of the diagonal of a matrix, in every wave.
-    fn add_on_diagonal(&mut self, which: MatrixKind, dof: usize, value: f64) -> Result<()> {
-        let n = self.ndof();
-        let mut starts = try_vec(n + 1, 0, CONTEXT)?;
-        starts[dof + 1..].fill(1);
-        let entry = MatrixView {
-            rows: n,
-            cols: n,
-            storage: Storage::Csc {
-                col_ptr: &starts,
-                row_idx: &[dof as i64],
-            },
-            values: Values::Real(&[value]),
-            part: Part::Symmetric,
-            index_base: 0,
+/// Adds a damper under platforms.
+pub(crate) fn add_damper(target: &mut Model, damper: &Damper<'_>) -> Result<DamperPlace> {
+    let inertia = damper.checked()?;
+    let mut model = target.try_clone()?;
+    let first = model.ndof();
+    model.extend(damper.motions)?;
+    let translations = if damper.motions == 3 { 2 } else { 3 };
+    for i in 0..damper.motions {
+        let is_turn = usize::from(i >= translations);
+        let inertia = match (i >= translations, damper.motions) {
+            (false, _) => damper.mass,
+            (true, 3) => inertia[2],
+            (true, _) => inertia[i - 3],
         };
-        self.add_direction(which, &entry, 1.0)
+        for (which, value) in [
+            (MatrixKind::Mass, inertia),
+            (MatrixKind::Stiffness, damper.support[is_turn]),
+            (MatrixKind::Damping, damper.support_damping[is_turn]),
+        ] {
+            add_on_diagonal(&mut model, which, first + i, value)?;
+        }
     }
+    if damper.mass * damper.orbit != 0.0 {
+        model.add_centrifugal(first + 1, damper.mass * damper.orbit)?;
+    }
+    let contacts = model.contacts().len();
+    for (i, face) in damper.faces.iter().enumerate() {
+        damper
+            .add_face(face, first, &mut model)
+            .map_err(|e| e.at(format_args!("faces[{i}]")))?;
+    }
+    *target = model;
+    Ok(DamperPlace {
+        dofs: first..target.ndof(),
+        contacts: contacts..target.contacts().len(),
+    })
+}
+
+/// Adds a number to an entry of the diagonal of a matrix, in every wave.
+fn add_on_diagonal(model: &mut Model, which: MatrixKind, dof: usize, value: f64) -> Result<()> {
+    let n = model.ndof();
+    let mut starts = try_vec(n + 1, 0, CONTEXT)?;
+    starts[dof + 1..].fill(1);
+    let entry = MatrixView {
+        rows: n,
+        cols: n,
+        storage: Storage::Csc {
+            col_ptr: &starts,
+            row_idx: &[dof as i64],
+        },
+        values: Values::Real(&[value]),
+        part: Part::Symmetric,
+        index_base: 0,
+    };
+    model.add_direction(which, &entry, 1.0)
 }
 
 impl Damper<'_> {

@@ -7,6 +7,7 @@ mod longer_period;
 pub mod matrices;
 mod mechanical_model;
 mod model_checks;
+mod model_methods;
 pub mod natural_modes;
 mod parameter_changes;
 pub mod saved;

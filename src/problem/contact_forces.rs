@@ -3,7 +3,7 @@
 
 mod coupling;
 mod ranges;
-mod single_matrix;
+pub(crate) mod single_matrix;
 
 use crate::aft::{Evaluation, Evaluator};
 use crate::condense::{Condensed, LoadedLaw};

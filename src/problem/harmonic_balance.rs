@@ -18,6 +18,7 @@ use crate::linalg::norm;
 use crate::options::Range;
 use crate::options::Response;
 use crate::problem::contact_forces::ContactForces;
+use crate::problem::contact_forces::single_matrix;
 use crate::problem::gauges::{Gauges, Seen};
 use crate::problem::homotopy::{AlongPath, Path, PathHomotopy};
 use crate::problem::parametric_problem::{End, Homotopy, InitialGuess, Problem, Residual, put};
@@ -462,9 +463,12 @@ impl Jacobian for HarmonicBalance<'_> {
         self.forces.mark_active(active);
         let is_active = active.contains(&true);
         if is_active
-            && self
-                .forces
-                .fill_single(self.tables.current(), &mut self.memory.flexibility, matrix)?
+            && single_matrix::fill_single(
+                &self.forces,
+                self.tables.current(),
+                &mut self.memory.flexibility,
+                matrix,
+            )?
         {
             return Ok(());
         }

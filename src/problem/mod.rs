@@ -18,7 +18,7 @@ mod passed_resonance;
 mod residual_scale;
 mod ring_blocks;
 mod single_balance;
-mod slip_forces;
+pub(crate) mod slip_forces;
 pub mod static_force;
 pub mod static_state;
 

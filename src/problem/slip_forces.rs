@@ -4,32 +4,30 @@ use crate::problem::harmonic_balance::HarmonicBalance;
 use crate::problem::parametric_problem::put;
 use num_complex::Complex64;
 
-impl HarmonicBalance<'_> {
-    /// The change of the residual with the logarithm of the slip limit of a coordinate, at the point last evaluated; `false` where it
-    /// does not slip.
-    pub fn by_slip_limit(&self, coordinate: usize, out: &mut [f64]) -> bool {
-        let set = self.condensed.set();
-        let (m, coordinates) = (set.packed_len(), self.condensed.coordinates());
-        out.fill(0.0);
-        let mut slips = false;
-        for (i, table) in self.tables.current().iter().enumerate() {
-            let slip = self.forces.d_ln_scale(coordinate, i);
-            slips |= slip != Complex64::ZERO;
-            let (at, mean) = (set.offset(i), set.numbers()[i] == 0);
-            let column = &table.value[coordinate * (coordinates + 1)..][..coordinates];
-            for (r, g) in (at..).step_by(m).zip(column) {
-                put(out, r, mean, g * slip);
-            }
+/// The change of the residual with the logarithm of the slip limit of a coordinate, at the point last evaluated; `false` where it
+/// does not slip.
+pub(crate) fn by_slip_limit(balance: &HarmonicBalance<'_>, coordinate: usize, out: &mut [f64]) -> bool {
+    let set = balance.condensed.set();
+    let (m, coordinates) = (set.packed_len(), balance.condensed.coordinates());
+    out.fill(0.0);
+    let mut slips = false;
+    for (i, table) in balance.tables.current().iter().enumerate() {
+        let slip = balance.forces.d_ln_scale(coordinate, i);
+        slips |= slip != Complex64::ZERO;
+        let (at, mean) = (set.offset(i), set.numbers()[i] == 0);
+        let column = &table.value[coordinate * (coordinates + 1)..][..coordinates];
+        for (r, g) in (at..).step_by(m).zip(column) {
+            put(out, r, mean, g * slip);
         }
-        slips
     }
+    slips
+}
 
-    /// Change of the observed amplitude with the logarithm of the slip limit of a coordinate at fixed motions of the
-    /// contacts.
-    #[must_use]
-    pub fn observed_by_slip_limit(&self, coordinate: usize) -> Complex64 {
-        let (i, coordinates) = (self.observed(), self.condensed.coordinates());
-        let table = &self.tables.current()[i].value;
-        -table[coordinate * (coordinates + 1) + coordinates] * self.forces.d_ln_scale(coordinate, i)
-    }
+/// Change of the observed amplitude with the logarithm of the slip limit of a coordinate at fixed motions of the
+/// contacts.
+#[must_use]
+pub(crate) fn observed_by_slip_limit(balance: &HarmonicBalance<'_>, coordinate: usize) -> Complex64 {
+    let (i, coordinates) = (balance.observed(), balance.condensed.coordinates());
+    let table = &balance.tables.current()[i].value;
+    -table[coordinate * (coordinates + 1) + coordinates] * balance.forces.d_ln_scale(coordinate, i)
 }

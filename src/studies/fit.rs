@@ -36,7 +36,7 @@ use crate::model::Model;
 use crate::options::SolverOptions;
 use crate::sensitivity::Parameter;
 use crate::studies::fit::fit_result::{is_poor, result};
-use crate::studies::fit::fit_search::Search;
+use crate::studies::fit::fit_search::FitSearch;
 use crate::studies::fit::fit_unknowns::Unknowns;
 use crate::studies::fit::preparation::{check, predictor};
 use crate::studies::fit::searches::{Searched, searched};
@@ -68,7 +68,7 @@ pub fn fit(
     interrupt.phase(Phase::Results, 0.0)?;
     let own = model.separate_clone()?;
     let predictor = predictor(&own, (parameters, &unknowns.scopes), data, solver, &interrupt);
-    let search = Search {
+    let search = FitSearch {
         predictor: &predictor,
         unknowns: &unknowns,
         options,

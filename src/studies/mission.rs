@@ -106,7 +106,7 @@ pub fn mission(
         }
         None => f64::NAN,
     };
-    let mut walk = Walk {
+    let mut walk = MissionWalk {
         table: &table,
         options,
         place: Place::default(),
@@ -136,7 +136,7 @@ struct Step {
     above: bool,
 }
 
-struct Walk<'a> {
+struct MissionWalk<'a> {
     table: &'a ModeTable,
     options: &'a MissionOptions<'a>,
     place: Place,
@@ -144,7 +144,7 @@ struct Walk<'a> {
     found: Mission,
 }
 
-impl Walk<'_> {
+impl MissionWalk<'_> {
     fn run(&mut self, interrupt: &Interrupt<'_>) -> Result<()> {
         let (times, speeds, order) = (self.options.times, self.options.speeds, self.options.engine_order);
         let mut q = steady(self.table, order * speeds[0])?;

@@ -11,7 +11,7 @@ use crate::options::SweepOptions;
 use crate::time_integration::event_loop::{EventLoop, Observers, State};
 use crate::time_integration::initial_state::state_of;
 use crate::time_integration::largest_motion::LargestMotion;
-use crate::time_integration::shooting::{Search, check_shooting};
+use crate::time_integration::shooting::{SteadySearch, check_shooting};
 use crate::time_integration::unrolled_structure::System;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -91,7 +91,7 @@ pub fn run_through(model: &Model, options: &SweepOptions<'_>, hooks: &mut Hooks<
         resting: try_vec(system.elements.len(), None, CONTEXT)?,
     };
     let mut quiet = hooks.quiet();
-    let steady = Search::new(&mut system, &mut event_loop, &first, &mut quiet, start)?.run()?;
+    let steady = SteadySearch::new(&mut system, &mut event_loop, &first, &mut quiet, start)?.run()?;
     if steady.status != Status::Ok {
         found.status = steady.status;
         return Ok(found);
@@ -109,7 +109,7 @@ pub fn run_through(model: &Model, options: &SweepOptions<'_>, hooks: &mut Hooks<
     for term in system.degrees.image(options.dof).1 {
         try_push(&mut observed, term, CONTEXT)?;
     }
-    let mut walk = Walk {
+    let mut walk = SweepWalk {
         bases: Vec::new(),
         down: options.omega_stop < options.omega_start,
         options,
@@ -146,7 +146,7 @@ fn find_resting(
     Ok(())
 }
 
-struct Walk<'a> {
+struct SweepWalk<'a> {
     /// Complex values of the loads at phase 0.
     bases: Vec<Complex64>,
     down: bool,
@@ -156,7 +156,7 @@ struct Walk<'a> {
     state: State,
 }
 
-impl Walk<'_> {
+impl SweepWalk<'_> {
     fn run(
         &mut self,
         (system, event_loop): (&mut System<'_>, &mut EventLoop),

@@ -32,7 +32,7 @@ pub(crate) use initial_state::{state_of, state_of_sector};
 pub(crate) use periodic_response::solve_disturbed;
 pub(crate) use perturbation_basis::PerturbationBasis;
 pub(crate) use sensitivity::Sensitivity;
-pub(crate) use shooting::{Search, Steady, check_shooting};
+pub(crate) use shooting::{Steady, SteadySearch, check_shooting};
 pub(crate) use step_polynomial::{DEGREE, first_fall};
 pub(crate) use unrolled_structure::{System, refuse_massless, refuse_structural_damping};
 pub(crate) use variation::{Interval, Variation};

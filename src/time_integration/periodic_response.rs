@@ -16,7 +16,7 @@ use crate::options::{SteadyMethod, TimeOptions};
 use crate::time_integration::event_loop::{EventLoop, Observers, State};
 use crate::time_integration::harmonic_analysis::HarmonicAnalysis;
 use crate::time_integration::initial_state::state_of;
-use crate::time_integration::shooting::{Search, check_shooting};
+use crate::time_integration::shooting::{SteadySearch, check_shooting};
 use crate::time_integration::unrolled_structure::System;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -120,7 +120,7 @@ fn integrate(
         start.disturb(disturbance, options.omega);
     }
     hooks.log(LogLevel::Info, "the structure in time is set up");
-    let mut steady = Search::new(&mut system, &mut event_loop, options, hooks, start)?.run()?;
+    let mut steady = SteadySearch::new(&mut system, &mut event_loop, options, hooks, start)?.run()?;
     let mut recorder = HarmonicAnalysis::new(&system, options.harmonics, options.samples)?;
     let observers = Observers {
         recorder: Some(&mut recorder),

@@ -80,7 +80,7 @@ enum Outcome {
 }
 
 /// A search for a steady state, with its memory.
-pub(crate) struct Search<'a, 'h, 's> {
+pub(crate) struct SteadySearch<'a, 'h, 's> {
     system: &'a mut System<'s>,
     event_loop: &'a mut EventLoop,
     options: &'a TimeOptions<'a>,
@@ -113,7 +113,7 @@ pub(crate) struct Sought {
     quick: bool,
 }
 
-impl<'a, 'h, 's> Search<'a, 'h, 's> {
+impl<'a, 'h, 's> SteadySearch<'a, 'h, 's> {
     /// A search from `start`.
     pub fn new(
         system: &'a mut System<'s>,

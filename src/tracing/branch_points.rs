@@ -11,7 +11,7 @@ use crate::error::{Result, try_copy};
 use crate::harmonics::discretised::Traceable;
 use crate::linalg::norm;
 use crate::results::{BifurcationKind, SpecialKind};
-use crate::tracing::branch_tracer::BranchTracer;
+use crate::tracing::course::BranchTracer;
 
 /// Halvings of the arc across a branch point.
 /// Kind: cap.
@@ -21,57 +21,55 @@ const BRANCH_POINTS_HALVINGS: usize = 26;
 /// Kind: tuned; measured on: not recorded.
 const BRANCH_POINTS_SMOOTH: f64 = 0.9;
 
-impl BranchTracer<'_> {
-    /// Locates and records the branch point between two neighbours of the curve, where the analysis seeks it.
-    pub(super) fn find_branch_point(
-        &mut self,
-        analysis: &mut dyn Traceable,
-        a: PointAt<'_>,
-        b: PointAt<'_>,
-    ) -> Result<()> {
-        if !analysis.seeks_branch_points() {
-            return Ok(());
-        }
-        analysis.select(a.1.max(b.1))?;
-        let level = analysis.resolution();
-        let mut ends = Vec::new();
-        for (point, from) in [a, b] {
-            let moved = analysis.transfer(point, from)?;
-            let solved = if from == level {
-                Some(moved)
-            } else {
-                analysis.resolve(&moved, false, self.interrupt)?
-            };
-            let Some(solved) = solved else {
-                return Ok(());
-            };
-            crate::error::try_push(&mut ends, solved, "the branch points")?;
-        }
-        let [a, b] = &ends[..] else { return Ok(()) };
-        let metric = Metric::along(norm(b.unknowns()), &self.course.settings);
-        let cosine = metric.dot(&a.tangent, &b.tangent) / (metric.norm(&a.tangent) * metric.norm(&b.tangent));
-        if a.positive == b.positive || cosine < BRANCH_POINTS_SMOOTH {
-            return Ok(());
-        }
-        let mut locator = Locator::new(a.unknowns().len(), self.course.settings)?;
-        let (mut low, mut high) = (0.0, 1.0);
-        let mut nearest = (a.try_clone()?, b.try_clone()?);
-        for _ in 0..BRANCH_POINTS_HALVINGS {
-            let middle = 0.5 * (low + high);
-            // At the branch point itself no plane across the curve isolates a solution.
-            let Some(point) = locator.between(analysis.problem(), (a, b), middle, self.interrupt)? else {
-                break;
-            };
-            if point.positive == a.positive {
-                (low, nearest.0) = (middle, point);
-            } else {
-                (high, nearest.1) = (middle, point);
-            }
-        }
-        let found = halfway((&nearest.0, &nearest.1), (a, b))?;
-        let kind = SpecialKind::Bifurcation(BifurcationKind::BranchPoint, [None; 2]);
-        self.record_special_as_it_is(analysis, kind, &found)
+/// Locates and records the branch point between two neighbours of the curve, where the analysis seeks it.
+pub(super) fn find_branch_point(
+    tracer: &mut BranchTracer<'_>,
+    analysis: &mut dyn Traceable,
+    a: PointAt<'_>,
+    b: PointAt<'_>,
+) -> Result<()> {
+    if !analysis.seeks_branch_points() {
+        return Ok(());
     }
+    analysis.select(a.1.max(b.1))?;
+    let level = analysis.resolution();
+    let mut ends = Vec::new();
+    for (point, from) in [a, b] {
+        let moved = analysis.transfer(point, from)?;
+        let solved = if from == level {
+            Some(moved)
+        } else {
+            analysis.resolve(&moved, false, tracer.interrupt)?
+        };
+        let Some(solved) = solved else {
+            return Ok(());
+        };
+        crate::error::try_push(&mut ends, solved, "the branch points")?;
+    }
+    let [a, b] = &ends[..] else { return Ok(()) };
+    let metric = Metric::along(norm(b.unknowns()), &tracer.course.settings);
+    let cosine = metric.dot(&a.tangent, &b.tangent) / (metric.norm(&a.tangent) * metric.norm(&b.tangent));
+    if a.positive == b.positive || cosine < BRANCH_POINTS_SMOOTH {
+        return Ok(());
+    }
+    let mut locator = Locator::new(a.unknowns().len(), tracer.course.settings)?;
+    let (mut low, mut high) = (0.0, 1.0);
+    let mut nearest = (a.try_clone()?, b.try_clone()?);
+    for _ in 0..BRANCH_POINTS_HALVINGS {
+        let middle = 0.5 * (low + high);
+        // At the branch point itself no plane across the curve isolates a solution.
+        let Some(point) = locator.between(analysis.problem(), (a, b), middle, tracer.interrupt)? else {
+            break;
+        };
+        if point.positive == a.positive {
+            (low, nearest.0) = (middle, point);
+        } else {
+            (high, nearest.1) = (middle, point);
+        }
+    }
+    let found = halfway((&nearest.0, &nearest.1), (a, b))?;
+    let kind = SpecialKind::Bifurcation(BifurcationKind::BranchPoint, [None; 2]);
+    tracer.record_special_as_it_is(analysis, kind, &found)
 }
 
 /// The point half way between two close ones, with the direction of a longer arc through `a` and `b`.

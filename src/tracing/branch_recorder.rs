@@ -4,6 +4,7 @@ use crate::condense::{Reduction, Resolution};
 use crate::error::{Error, Result, Status, try_copy, try_push};
 use crate::options::MAX_REFINEMENT;
 use crate::results::stored::mode_branch::ModePoint;
+use crate::results::watched::responses;
 use crate::results::{Branch, Record, SeenWithError, SpecialKind, Verdict};
 use core::cmp::Ordering;
 use num_complex::Complex64;
@@ -194,9 +195,7 @@ impl<'a> BranchRecorder<'a> {
         for special in &self.specials {
             let seen = special.kind.response().and_then(|r| Some((r, special.seen.get(r)?)));
             if let Some((response, seen)) = seen
-                && self
-                    .branch
-                    .is_rounding(response, seen.seen.reading.value, special.resolution)
+                && responses::is_rounding(&self.branch, response, seen.seen.reading.value, special.resolution)
             {
                 continue;
             }

@@ -1,60 +1,14 @@
 //! Special points of a branch: located between two neighbours that were recorded, sharpened and recorded.
 
-use crate::continuation::special_points::{Locator, SpecialPoint};
+use crate::continuation::special_points::Locator;
 use crate::continuation::{Point, PointAt};
 use crate::error::{Result, Status};
 use crate::harmonics::discretised::Traceable;
 use crate::problem::Problem;
 use crate::results::SpecialKind;
-use crate::tracing::branch_tracer::BranchTracer;
+use crate::tracing::course::BranchTracer;
 
 impl BranchTracer<'_> {
-    /// Locates folds, other bifurcations, peaks, limit cycles and requested parameter values between two neighbours.
-    // Out of line: its points do not lie on the stack under a step.
-    #[inline(never)]
-    pub(super) fn locate_special(
-        &mut self,
-        analysis: &mut dyn Traceable,
-        a: PointAt<'_>,
-        b: PointAt<'_>,
-        last: bool,
-    ) -> Result<()> {
-        analysis.select(a.1.max(b.1))?;
-        let interrupt = self.interrupt;
-        if analysis.observes_peaks() {
-            self.find_peaks_between(analysis, a, b)?;
-        }
-        self.find_peaks_of_responses(analysis, a, b)?;
-        self.find_kinks_of_responses(analysis, a, b)?;
-        if let Some(level) = analysis.level_of_limit_cycles().map(SpecialPoint::Level)
-            && level.between(a.0, b.0)
-        {
-            analysis.select(a.1.max(b.1))?;
-            let kind = SpecialKind::LimitCycle { slope: f64::NAN };
-            self.find(analysis, kind, a, b, |locator, problem, a, b| {
-                locator.locate(problem, level, a, b, interrupt)
-            })?;
-        }
-        // A peak may have required more harmonics; a fold is located with those of its neighbours.
-        analysis.select(a.1.max(b.1))?;
-        let fold = if SpecialPoint::Fold.between(a.0, b.0) {
-            self.find(analysis, SpecialKind::Fold, a, b, |locator, problem, a, b| {
-                locator.locate(problem, SpecialPoint::Fold, a, b, interrupt)
-            })?
-        } else {
-            None
-        };
-        let turn = fold.as_ref().map(|(fold, resolution)| (fold, *resolution));
-        self.find_bifurcations(analysis, a, b, turn)?;
-        self.find_branch_point(analysis, a, b)?;
-        if let Some((fold, resolution)) = &fold {
-            self.find_requested(analysis, a, (fold, *resolution), false)?;
-            self.find_requested(analysis, (fold, *resolution), b, last)
-        } else {
-            self.find_requested(analysis, a, b, last)
-        }
-    }
-
     /// Searches between two neighbours and records the point that is found, with the harmonics that it requires.
     pub(super) fn find(
         &mut self,

@@ -14,8 +14,9 @@ use crate::hooks::{Hooks, LogLevel};
 use crate::linalg::norm;
 use crate::options::Range;
 use crate::results::SpecialKind;
-use crate::tracing::branch_tracer::{BranchTracer, Stretch, some_unless_lost};
+use crate::tracing::course::{BranchTracer, Stretch, some_unless_lost};
 use crate::tracing::resonance_grid::LinearGrid;
+use crate::tracing::response_kinks;
 
 /// Outcome of the part of a stretch from a point to the next value.
 enum Next {
@@ -68,395 +69,409 @@ const FAR_LARGER: f64 = 10.0;
 
 const CONTEXT: &str = "the linear response";
 
-impl BranchTracer<'_> {
-    /// Follows the branch from the point recorded last, at which every contact is linear. `None` if the analysis has
-    /// no linear response.
-    // Out of line: its points do not lie on the stack under a step.
-    #[inline(never)]
-    pub(super) fn follow_linear(
-        &mut self,
-        analysis: &mut dyn Traceable,
-        (from, resolution): PointAt<'_>,
-        hooks: &mut Hooks<'_>,
-    ) -> Result<Option<Stretch>> {
-        self.make_grid(analysis, hooks)?;
-        let settings = self.course.settings;
-        // Between points of a linear response only the parameter counts.
-        let most = settings
-            .steps
-            .bound()
-            .map_or(f64::INFINITY, |bound| bound * (settings.end - settings.start).abs());
-        let rising = from.tangent[from.tangent.len() - 1] > 0.0;
-        let mut here = analysis.transfer(from, resolution)?;
-        loop {
-            if analysis.branch().points() >= self.course.max_points {
-                return Ok(Some(Stretch::Stopped(Status::StoppedMaxPoints)));
-            }
-            self.interrupt.check()?;
-            let Some(grid) = &self.linear_grid else {
-                return Ok(None);
-            };
-            let Some(value) = grid.after(here.parameter(), rising, most) else {
-                return Ok(None);
-            };
-            let (point, onset) = match self.next_linear(analysis, &here, value)? {
-                Next::Reached(point) => (point, None),
-                Next::Onset(point, beyond) => {
-                    let distance = (beyond - point.parameter()).abs();
-                    (point, Some(distance))
-                }
-            };
-            let end = [settings.end, settings.start]
-                .into_iter()
-                .find(|bound| bound.to_bits() == point.parameter().to_bits());
-            let moved = point.parameter().to_bits() != here.parameter().to_bits();
-            if moved {
-                if some_unless_lost(analysis.record(&point))?.is_none() {
-                    return Ok(Some(Stretch::Stopped(Status::StoppedStepTooSmall)));
-                }
-                let stop = self.report(analysis, hooks, &point);
-                self.find_on_line(analysis, &here, &point, end.is_some(), hooks)?;
-                if stop {
-                    return Ok(Some(Stretch::Stopped(Status::StoppedByCaller)));
-                }
-            }
-            if let Some(distance) = onset {
-                return Ok(Some(Stretch::Onset {
-                    before: moved.then_some(here),
-                    point,
-                    distance,
-                }));
-            }
-            if let Some(bound) = end {
-                let status = if bound.to_bits() == settings.end.to_bits() {
-                    Status::Ok
-                } else {
-                    Status::StoppedLeftRange
-                };
-                return Ok(Some(Stretch::End(point, status)));
-            }
-            here = point;
+/// Follows the branch from the point recorded last, at which every contact is linear. `None` if the analysis has
+/// no linear response.
+// Out of line: its points do not lie on the stack under a step.
+#[inline(never)]
+pub(super) fn follow_linear(
+    tracer: &mut BranchTracer<'_>,
+    analysis: &mut dyn Traceable,
+    (from, resolution): PointAt<'_>,
+    hooks: &mut Hooks<'_>,
+) -> Result<Option<Stretch>> {
+    make_grid(tracer, analysis, hooks)?;
+    let settings = tracer.course.settings;
+    // Between points of a linear response only the parameter counts.
+    let most = settings
+        .steps
+        .bound()
+        .map_or(f64::INFINITY, |bound| bound * (settings.end - settings.start).abs());
+    let rising = from.tangent[from.tangent.len() - 1] > 0.0;
+    let mut here = analysis.transfer(from, resolution)?;
+    loop {
+        if analysis.branch().points() >= tracer.course.max_points {
+            return Ok(Some(Stretch::Stopped(Status::StoppedMaxPoints)));
         }
-    }
-
-    /// Computes the parameter values for all stretches of a branch, once.
-    fn make_grid(&mut self, analysis: &mut dyn Traceable, hooks: &mut Hooks<'_>) -> Result<()> {
-        if self.grid_requested {
-            return Ok(());
-        }
-        self.grid_requested = true;
-        let settings = self.course.settings;
-        let range = Range::new(settings.start.min(settings.end), settings.start.max(settings.end));
-        let Some(resonances) = analysis.resonances(range)? else {
-            let reason = "natural frequencies are not known: linear contacts are followed like nonlinear ones";
-            hooks.log(LogLevel::Info, reason);
-            return Ok(());
+        tracer.interrupt.check()?;
+        let Some(grid) = &tracer.linear_grid else {
+            return Ok(None);
         };
-        self.linear_grid = Some(LinearGrid::new(&resonances, range)?);
-        Ok(())
-    }
-
-    /// The linear response at `value`, or the last point before it at which every contact is linear.
-    fn next_linear(&self, analysis: &mut dyn Traceable, here: &Point, value: f64) -> Result<Next> {
-        let Some(point) = analysis.linear_at(here, value, self.interrupt)? else {
-            return self.onset(analysis, here, value);
+        let Some(value) = grid.after(here.parameter(), rising, most) else {
+            return Ok(None);
         };
-        let shares = [here, &point].map(|p| analysis.linear_share(p));
-        let [before, after] = shares;
-        let largest = before?.max(after?);
-        if largest.is_nan() || largest <= LINEAR_STRETCH_NEARLY {
-            return Ok(Next::Reached(point));
-        }
-        // The share may have a maximum above 1 between two values.
-        let (mut low, mut high) = (here.parameter(), value);
-        let mut inner = [
-            high - LINEAR_STRETCH_GOLDEN * (high - low),
-            low + LINEAR_STRETCH_GOLDEN * (high - low),
-        ];
-        let mut found = [0.0; 2];
-        for (at, share) in inner.iter().zip(&mut found) {
-            match self.share_at(analysis, here, *at)? {
-                Some(known) => *share = known,
-                None => return self.onset(analysis, here, *at),
+        let (point, onset) = match next_linear(tracer, analysis, &here, value)? {
+            Next::Reached(point) => (point, None),
+            Next::Onset(point, beyond) => {
+                let distance = (beyond - point.parameter()).abs();
+                (point, Some(distance))
+            }
+        };
+        let end = [settings.end, settings.start]
+            .into_iter()
+            .find(|bound| bound.to_bits() == point.parameter().to_bits());
+        let moved = point.parameter().to_bits() != here.parameter().to_bits();
+        if moved {
+            if some_unless_lost(analysis.record(&point))?.is_none() {
+                return Ok(Some(Stretch::Stopped(Status::StoppedStepTooSmall)));
+            }
+            let stop = tracer.report(analysis, hooks, &point);
+            find_on_line(tracer, analysis, &here, &point, end.is_some(), hooks)?;
+            if stop {
+                return Ok(Some(Stretch::Stopped(Status::StoppedByCaller)));
             }
         }
-        for _ in 0..GOLDEN_STEPS {
-            let left = found[0] > found[1];
-            let at = if left {
-                high = inner[1];
-                inner[1] = inner[0];
-                found[1] = found[0];
-                inner[0] = high - LINEAR_STRETCH_GOLDEN * (high - low);
-                inner[0]
+        if let Some(distance) = onset {
+            return Ok(Some(Stretch::Onset {
+                before: moved.then_some(here),
+                point,
+                distance,
+            }));
+        }
+        if let Some(bound) = end {
+            let status = if bound.to_bits() == settings.end.to_bits() {
+                Status::Ok
             } else {
-                low = inner[0];
-                inner[0] = inner[1];
-                found[0] = found[1];
-                inner[1] = low + LINEAR_STRETCH_GOLDEN * (high - low);
-                inner[1]
+                Status::StoppedLeftRange
             };
-            match self.share_at(analysis, here, at)? {
-                Some(known) => found[usize::from(!left)] = known,
-                None => return self.onset(analysis, here, at),
-            }
+            return Ok(Some(Stretch::End(point, status)));
         }
-        // The problem must be evaluated at the point that is recorded next.
-        Ok(match analysis.linear_at(here, value, self.interrupt)? {
-            Some(point) => Next::Reached(point),
-            None => Next::Onset(here.try_clone()?, value),
-        })
+        here = point;
     }
+}
 
-    /// Largest share of its linear range that a contact uses at a value; `None` if a contact leaves that range.
-    fn share_at(&self, analysis: &mut dyn Traceable, here: &Point, value: f64) -> Result<Option<f64>> {
-        match analysis.linear_at(here, value, self.interrupt)? {
-            Some(point) => analysis.linear_share(&point).map(Some),
-            None => Ok(None),
+/// Computes the parameter values for all stretches of a branch, once.
+fn make_grid(tracer: &mut BranchTracer<'_>, analysis: &mut dyn Traceable, hooks: &mut Hooks<'_>) -> Result<()> {
+    if tracer.grid_requested {
+        return Ok(());
+    }
+    tracer.grid_requested = true;
+    let settings = tracer.course.settings;
+    let range = Range::new(settings.start.min(settings.end), settings.start.max(settings.end));
+    let Some(resonances) = analysis.resonances(range)? else {
+        let reason = "natural frequencies are not known: linear contacts are followed like nonlinear ones";
+        hooks.log(LogLevel::Info, reason);
+        return Ok(());
+    };
+    tracer.linear_grid = Some(LinearGrid::new(&resonances, range)?);
+    Ok(())
+}
+
+/// The linear response at `value`, or the last point before it at which every contact is linear.
+fn next_linear(tracer: &BranchTracer<'_>, analysis: &mut dyn Traceable, here: &Point, value: f64) -> Result<Next> {
+    let Some(point) = analysis.linear_at(here, value, tracer.interrupt)? else {
+        return onset(tracer, analysis, here, value);
+    };
+    let shares = [here, &point].map(|p| analysis.linear_share(p));
+    let [before, after] = shares;
+    let largest = before?.max(after?);
+    if largest.is_nan() || largest <= LINEAR_STRETCH_NEARLY {
+        return Ok(Next::Reached(point));
+    }
+    // The share may have a maximum above 1 between two values.
+    let (mut low, mut high) = (here.parameter(), value);
+    let mut inner = [
+        high - LINEAR_STRETCH_GOLDEN * (high - low),
+        low + LINEAR_STRETCH_GOLDEN * (high - low),
+    ];
+    let mut found = [0.0; 2];
+    for (at, share) in inner.iter().zip(&mut found) {
+        match share_at(tracer, analysis, here, *at)? {
+            Some(known) => *share = known,
+            None => return onset(tracer, analysis, here, *at),
         }
     }
-
-    /// The last point between `here` and a value beyond it at which every contact is linear, by bisection.
-    fn onset(&self, analysis: &mut dyn Traceable, here: &Point, beyond: f64) -> Result<Next> {
-        let mut inside = here.try_clone()?;
-        let mut outside = beyond;
-        while (outside - inside.parameter()).abs() > LINEAR_STRETCH_ROUNDING * outside.abs() {
-            let middle = 0.5 * (inside.parameter() + outside);
-            match analysis.linear_at(&inside, middle, self.interrupt)? {
-                Some(point) => inside = point,
-                None => outside = middle,
-            }
-        }
-        Ok(Next::Onset(inside, beyond))
-    }
-
-    /// Records the peak and the requested solutions between two neighbours, `b` included if it is the last point.
-    fn find_on_line(
-        &mut self,
-        analysis: &mut dyn Traceable,
-        a: &Point,
-        b: &Point,
-        last: bool,
-        hooks: &mut Hooks<'_>,
-    ) -> Result<()> {
-        let (pa, pb) = (a.parameter(), b.parameter());
-        let (low, high) = if pa < pb { (a, b) } else { (b, a) };
-        if let Some(omega) = self.unbounded_between(analysis, [low, high])? {
-            let text =
-                format!("undamped resonance at {omega}: the response is unbounded, and no peak is recorded there");
-            hooks.log(LogLevel::Warn, &text);
-            if let Some(grid) = &mut self.linear_grid {
-                grid.unbounded.get_or_insert(omega);
-            }
+    for _ in 0..GOLDEN_STEPS {
+        let left = found[0] > found[1];
+        let at = if left {
+            high = inner[1];
+            inner[1] = inner[0];
+            found[1] = found[0];
+            inner[0] = high - LINEAR_STRETCH_GOLDEN * (high - low);
+            inner[0]
         } else {
-            if analysis.observes_peaks() {
-                self.find_peaks(analysis, SpecialKind::Peak, low, high)?;
-            }
-            let resolution = analysis.resolution();
-            for response in analysis.further_responses() {
-                let low = analysis.seen_by(response, (low, resolution))?;
-                let high = analysis.seen_by(response, (high, resolution))?;
-                self.find_peaks(analysis, SpecialKind::PeakOf(response), &low, &high)?;
-            }
-            self.find_kinks_of_responses(analysis, (a, resolution), (b, resolution))?;
-        }
-        for (i, &p) in self.course.at.iter().enumerate() {
-            let inside = (pa <= p && p < pb) || (pb < p && p <= pa) || (last && p.to_bits() == pb.to_bits());
-            if inside && let Some(point) = analysis.linear_at(a, p, self.interrupt)? {
-                self.record_on_line(analysis, SpecialKind::At(i), point)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// The first undamped resonance between two neighbours that the forces excite: right beside it the motion is far larger
-    /// than at both.
-    fn unbounded_between(&self, analysis: &mut dyn Traceable, ends: [&Point; 2]) -> Result<Option<f64>> {
-        let Some(grid) = &self.linear_grid else { return Ok(None) };
-        let largest = ends.iter().fold([0.0_f64; 2], |most, point| larger(most, point));
-        for &omega in &grid.undamped {
-            if !(ends[0].parameter() < omega && omega < ends[1].parameter()) {
-                continue;
-            }
-            for at in [omega * (1.0 - BESIDE_UNDAMPED), omega * (1.0 + BESIDE_UNDAMPED)] {
-                let Some(beside) = analysis.linear_at(ends[0], at, self.interrupt)? else {
-                    continue;
-                };
-                let here = larger([0.0; 2], &beside);
-                if (0..2).any(|i| here[i] > FAR_LARGER * largest[i]) {
-                    return Ok(Some(omega));
-                }
-            }
-        }
-        Ok(None)
-    }
-
-    /// Records a special point with the harmonics that it requires; the stretch continues with its own harmonics.
-    fn record_on_line(&mut self, analysis: &mut dyn Traceable, kind: SpecialKind, mut point: Point) -> Result<()> {
-        let own = analysis.resolution();
-        let mut at = own;
-        while !self.record_special(analysis, kind, &point)? {
-            let start = analysis.transfer(&point, at)?;
-            let Some(found) = analysis.linear_at(&start, point.parameter(), self.interrupt)? else {
-                // A point found with fewer harmonics is better than none.
-                analysis.select(at)?;
-                self.record_special_as_it_is(analysis, kind, &point)?;
-                break;
-            };
-            (point, at) = (found, analysis.resolution());
-        }
-        analysis.select(own)
-    }
-
-    /// Records the maxima of the amplitude between two neighbours. The maxima of the cubic through both show where
-    /// there is more than one, or one beside a minimum.
-    fn find_peaks(&mut self, analysis: &mut dyn Traceable, kind: SpecialKind, low: &Point, high: &Point) -> Result<()> {
-        let ends = [low, high].map(|p| (p.parameter(), growth(p)));
-        let [(from, begin), (to, end)] = ends;
-        // The cubic's derivative in the parts, and its value nearest to a change of sign.
-        let mut brackets = Vec::new();
-        let mut before = ends[0];
-        let mut nearest: Option<(f64, f64)> = None;
-        for i in 1..PARTS {
-            let s = i as f64 / PARTS as f64;
-            let (slope, size) = predicted_growth(low, high, s);
-            let here = (from + s * (to - from), slope);
-            if before.1 > 0.0 && slope <= 0.0 {
-                try_push(&mut brackets, [before, here], CONTEXT)?;
-            }
-            let against = slope * begin.signum();
-            if against < UNCERTAIN * size && nearest.is_none_or(|(_, least)| against < least) {
-                nearest = Some((here.0, against));
-            }
-            before = here;
-        }
-        if before.1 > 0.0 && end <= 0.0 {
-            try_push(&mut brackets, [before, ends[1]], CONTEXT)?;
-        }
-        let single = begin > 0.0 && end <= 0.0;
-        if single && brackets.len() <= 1 {
-            return self.find_peak(analysis, kind, low, ends);
-        }
-        if brackets.is_empty()
-            && (begin > 0.0) == (end > 0.0)
-            && let Some((value, _)) = nearest
-        {
-            let middle = (value, f64::NAN);
-            let bracket = if begin > 0.0 {
-                [ends[0], middle]
-            } else {
-                [middle, ends[1]]
-            };
-            try_push(&mut brackets, bracket, CONTEXT)?;
-        }
-        // The cubic tells where to look; the derivatives there and at the ends tell between which of them a maximum lies.
-        let mut before = ends[0];
-        for (value, _) in brackets.into_iter().flatten().chain([ends[1]]) {
-            let inside = value > from && value < to;
-            let here = if value <= before.0 {
-                continue;
-            } else if !inside {
-                ends[1]
-            } else if let Some(point) = analysis.linear_at(low, value, self.interrupt)? {
-                (value, growth_of(analysis, kind, &point)?)
-            } else {
-                continue;
-            };
-            if before.1 > 0.0 && here.1 <= 0.0 {
-                self.find_peak(analysis, kind, low, [before, here])?;
-            }
-            before = here;
-        }
-        Ok(())
-    }
-
-    /// Records the maximum between two values: the root of the derivative, found fast and then accurately.
-    fn find_peak(
-        &mut self,
-        analysis: &mut dyn Traceable,
-        kind: SpecialKind,
-        from: &Point,
-        ends: [(f64, f64); 2],
-    ) -> Result<()> {
-        let Some(near) = self.stationary(analysis, kind, from, ends)? else {
-            return Ok(());
+            low = inner[0];
+            inner[0] = inner[1];
+            found[0] = found[1];
+            inner[1] = low + LINEAR_STRETCH_GOLDEN * (high - low);
+            inner[1]
         };
-        analysis.set_accurate(true);
-        let accurate = self.stationary_near(analysis, kind, &near, (ends[0].0, ends[1].0));
-        let recorded = accurate.and_then(|peak| {
-            let peak = match peak {
-                Some(peak) => Some(peak),
-                None => analysis.linear_at(&near, near.parameter(), self.interrupt)?,
-            };
-            match peak {
-                Some(peak) => self.record_on_line(analysis, kind, peak),
-                None => Ok(()),
-            }
-        });
-        analysis.set_accurate(false);
-        recorded
+        match share_at(tracer, analysis, here, at)? {
+            Some(known) => found[usize::from(!left)] = known,
+            None => return onset(tracer, analysis, here, at),
+        }
     }
+    // The problem must be evaluated at the point that is recorded next.
+    Ok(match analysis.linear_at(here, value, tracer.interrupt)? {
+        Some(point) => Next::Reached(point),
+        None => Next::Onset(here.try_clone()?, value),
+    })
+}
 
-    /// Finds the maximum near a good approximation, from a bracket around it that is widened until it holds the root.
-    fn stationary_near(
-        &self,
-        analysis: &mut dyn Traceable,
-        kind: SpecialKind,
-        near: &Point,
-        (low, high): (f64, f64),
-    ) -> Result<Option<Point>> {
-        let at = near.parameter();
-        let mut width = BRACKET * at.abs();
-        while width < high - low {
-            let values = [(at - width).max(low), (at + width).min(high)];
-            let mut ends = [(0.0, 0.0); 2];
-            for (end, value) in ends.iter_mut().zip(values) {
-                let Some(point) = analysis.linear_at(near, value, self.interrupt)? else {
-                    return Ok(None);
-                };
-                *end = (value, growth_of(analysis, kind, &point)?);
-            }
-            if ends[0].1 > 0.0 && ends[1].1 <= 0.0 {
-                return self.stationary(analysis, kind, near, ends);
-            }
-            width *= WIDENING;
-        }
-        Ok(None)
+/// Largest share of its linear range that a contact uses at a value; `None` if a contact leaves that range.
+fn share_at(tracer: &BranchTracer<'_>, analysis: &mut dyn Traceable, here: &Point, value: f64) -> Result<Option<f64>> {
+    match analysis.linear_at(here, value, tracer.interrupt)? {
+        Some(point) => analysis.linear_share(&point).map(Some),
+        None => Ok(None),
     }
+}
 
-    /// A root of the amplitude's derivative between two values.
-    fn stationary(
-        &self,
-        analysis: &mut dyn Traceable,
-        kind: SpecialKind,
-        near: &Point,
-        [low, high]: [(f64, f64); 2],
-    ) -> Result<Option<Point>> {
-        let width = high.0 - low.0;
-        let mut bracket = Bracket::new(low.1, high.1);
-        let mut best = None;
-        for _ in 0..LINEAR_STRETCH_MAX_EVALUATIONS {
-            let (share, is_last) = (bracket.guess(), bracket.is_last());
-            let at = low.0 + share * width;
-            let rounding = LINEAR_STRETCH_ROUNDING * at.abs();
-            if bracket.width() * width <= rounding || at <= low.0 || at >= high.0 {
-                break;
-            }
-            let Some(point) = analysis.linear_at(near, at, self.interrupt)? else {
-                break;
-            };
-            let slope = growth_of(analysis, kind, &point)?;
-            best = Some(point);
-            if slope == 0.0 || is_last || bracket.narrow(share, slope) * width <= rounding {
-                break;
-            }
+/// The last point between `here` and a value beyond it at which every contact is linear, by bisection.
+fn onset(tracer: &BranchTracer<'_>, analysis: &mut dyn Traceable, here: &Point, beyond: f64) -> Result<Next> {
+    let mut inside = here.try_clone()?;
+    let mut outside = beyond;
+    while (outside - inside.parameter()).abs() > LINEAR_STRETCH_ROUNDING * outside.abs() {
+        let middle = 0.5 * (inside.parameter() + outside);
+        match analysis.linear_at(&inside, middle, tracer.interrupt)? {
+            Some(point) => inside = point,
+            None => outside = middle,
         }
-        if best.is_none() {
-            // The root is at an end, up to rounding.
-            let end = if low.1.abs() <= high.1.abs() { low.0 } else { high.0 };
-            best = analysis.linear_at(near, end, self.interrupt)?;
-        }
-        Ok(best)
     }
+    Ok(Next::Onset(inside, beyond))
+}
+
+/// Records the peak and the requested solutions between two neighbours, `b` included if it is the last point.
+fn find_on_line(
+    tracer: &mut BranchTracer<'_>,
+    analysis: &mut dyn Traceable,
+    a: &Point,
+    b: &Point,
+    last: bool,
+    hooks: &mut Hooks<'_>,
+) -> Result<()> {
+    let (pa, pb) = (a.parameter(), b.parameter());
+    let (low, high) = if pa < pb { (a, b) } else { (b, a) };
+    if let Some(omega) = unbounded_between(tracer, analysis, [low, high])? {
+        let text = format!("undamped resonance at {omega}: the response is unbounded, and no peak is recorded there");
+        hooks.log(LogLevel::Warn, &text);
+        if let Some(grid) = &mut tracer.linear_grid {
+            grid.unbounded.get_or_insert(omega);
+        }
+    } else {
+        if analysis.observes_peaks() {
+            find_peaks(tracer, analysis, SpecialKind::Peak, low, high)?;
+        }
+        let resolution = analysis.resolution();
+        for response in analysis.further_responses() {
+            let low = analysis.seen_by(response, (low, resolution))?;
+            let high = analysis.seen_by(response, (high, resolution))?;
+            find_peaks(tracer, analysis, SpecialKind::PeakOf(response), &low, &high)?;
+        }
+        response_kinks::find_kinks_of_responses(tracer, analysis, (a, resolution), (b, resolution))?;
+    }
+    for (i, &p) in tracer.course.at.iter().enumerate() {
+        let inside = (pa <= p && p < pb) || (pb < p && p <= pa) || (last && p.to_bits() == pb.to_bits());
+        if inside && let Some(point) = analysis.linear_at(a, p, tracer.interrupt)? {
+            record_on_line(tracer, analysis, SpecialKind::At(i), point)?;
+        }
+    }
+    Ok(())
+}
+
+/// The first undamped resonance between two neighbours that the forces excite: right beside it the motion is far larger than at
+/// both.
+fn unbounded_between(
+    tracer: &BranchTracer<'_>,
+    analysis: &mut dyn Traceable,
+    ends: [&Point; 2],
+) -> Result<Option<f64>> {
+    let Some(grid) = &tracer.linear_grid else {
+        return Ok(None);
+    };
+    let largest = ends.iter().fold([0.0_f64; 2], |most, point| larger(most, point));
+    for &omega in &grid.undamped {
+        if !(ends[0].parameter() < omega && omega < ends[1].parameter()) {
+            continue;
+        }
+        for at in [omega * (1.0 - BESIDE_UNDAMPED), omega * (1.0 + BESIDE_UNDAMPED)] {
+            let Some(beside) = analysis.linear_at(ends[0], at, tracer.interrupt)? else {
+                continue;
+            };
+            let here = larger([0.0; 2], &beside);
+            if (0..2).any(|i| here[i] > FAR_LARGER * largest[i]) {
+                return Ok(Some(omega));
+            }
+        }
+    }
+    Ok(None)
+}
+
+/// Records a special point with the harmonics that it requires; the stretch continues with its own harmonics.
+fn record_on_line(
+    tracer: &mut BranchTracer<'_>,
+    analysis: &mut dyn Traceable,
+    kind: SpecialKind,
+    mut point: Point,
+) -> Result<()> {
+    let own = analysis.resolution();
+    let mut at = own;
+    while !tracer.record_special(analysis, kind, &point)? {
+        let start = analysis.transfer(&point, at)?;
+        let Some(found) = analysis.linear_at(&start, point.parameter(), tracer.interrupt)? else {
+            // A point found with fewer harmonics is better than none.
+            analysis.select(at)?;
+            tracer.record_special_as_it_is(analysis, kind, &point)?;
+            break;
+        };
+        (point, at) = (found, analysis.resolution());
+    }
+    analysis.select(own)
+}
+
+/// Records the maxima of the amplitude between two neighbours. The maxima of the cubic through both show where
+/// there is more than one, or one beside a minimum.
+fn find_peaks(
+    tracer: &mut BranchTracer<'_>,
+    analysis: &mut dyn Traceable,
+    kind: SpecialKind,
+    low: &Point,
+    high: &Point,
+) -> Result<()> {
+    let ends = [low, high].map(|p| (p.parameter(), growth(p)));
+    let [(from, begin), (to, end)] = ends;
+    // The cubic's derivative in the parts, and its value nearest to a change of sign.
+    let mut brackets = Vec::new();
+    let mut before = ends[0];
+    let mut nearest: Option<(f64, f64)> = None;
+    for i in 1..PARTS {
+        let s = i as f64 / PARTS as f64;
+        let (slope, size) = predicted_growth(low, high, s);
+        let here = (from + s * (to - from), slope);
+        if before.1 > 0.0 && slope <= 0.0 {
+            try_push(&mut brackets, [before, here], CONTEXT)?;
+        }
+        let against = slope * begin.signum();
+        if against < UNCERTAIN * size && nearest.is_none_or(|(_, least)| against < least) {
+            nearest = Some((here.0, against));
+        }
+        before = here;
+    }
+    if before.1 > 0.0 && end <= 0.0 {
+        try_push(&mut brackets, [before, ends[1]], CONTEXT)?;
+    }
+    let single = begin > 0.0 && end <= 0.0;
+    if single && brackets.len() <= 1 {
+        return find_peak(tracer, analysis, kind, low, ends);
+    }
+    if brackets.is_empty()
+        && (begin > 0.0) == (end > 0.0)
+        && let Some((value, _)) = nearest
+    {
+        let middle = (value, f64::NAN);
+        let bracket = if begin > 0.0 {
+            [ends[0], middle]
+        } else {
+            [middle, ends[1]]
+        };
+        try_push(&mut brackets, bracket, CONTEXT)?;
+    }
+    // The cubic tells where to look; the derivatives there and at the ends tell between which of them a maximum lies.
+    let mut before = ends[0];
+    for (value, _) in brackets.into_iter().flatten().chain([ends[1]]) {
+        let inside = value > from && value < to;
+        let here = if value <= before.0 {
+            continue;
+        } else if !inside {
+            ends[1]
+        } else if let Some(point) = analysis.linear_at(low, value, tracer.interrupt)? {
+            (value, growth_of(analysis, kind, &point)?)
+        } else {
+            continue;
+        };
+        if before.1 > 0.0 && here.1 <= 0.0 {
+            find_peak(tracer, analysis, kind, low, [before, here])?;
+        }
+        before = here;
+    }
+    Ok(())
+}
+
+/// Records the maximum between two values: the root of the derivative, found fast and then accurately.
+fn find_peak(
+    tracer: &mut BranchTracer<'_>,
+    analysis: &mut dyn Traceable,
+    kind: SpecialKind,
+    from: &Point,
+    ends: [(f64, f64); 2],
+) -> Result<()> {
+    let Some(near) = stationary(tracer, analysis, kind, from, ends)? else {
+        return Ok(());
+    };
+    analysis.set_accurate(true);
+    let accurate = stationary_near(tracer, analysis, kind, &near, (ends[0].0, ends[1].0));
+    let recorded = accurate.and_then(|peak| {
+        let peak = match peak {
+            Some(peak) => Some(peak),
+            None => analysis.linear_at(&near, near.parameter(), tracer.interrupt)?,
+        };
+        match peak {
+            Some(peak) => record_on_line(tracer, analysis, kind, peak),
+            None => Ok(()),
+        }
+    });
+    analysis.set_accurate(false);
+    recorded
+}
+
+/// Finds the maximum near a good approximation, from a bracket around it that is widened until it holds the root.
+fn stationary_near(
+    tracer: &BranchTracer<'_>,
+    analysis: &mut dyn Traceable,
+    kind: SpecialKind,
+    near: &Point,
+    (low, high): (f64, f64),
+) -> Result<Option<Point>> {
+    let at = near.parameter();
+    let mut width = BRACKET * at.abs();
+    while width < high - low {
+        let values = [(at - width).max(low), (at + width).min(high)];
+        let mut ends = [(0.0, 0.0); 2];
+        for (end, value) in ends.iter_mut().zip(values) {
+            let Some(point) = analysis.linear_at(near, value, tracer.interrupt)? else {
+                return Ok(None);
+            };
+            *end = (value, growth_of(analysis, kind, &point)?);
+        }
+        if ends[0].1 > 0.0 && ends[1].1 <= 0.0 {
+            return stationary(tracer, analysis, kind, near, ends);
+        }
+        width *= WIDENING;
+    }
+    Ok(None)
+}
+
+/// A root of the amplitude's derivative between two values.
+fn stationary(
+    tracer: &BranchTracer<'_>,
+    analysis: &mut dyn Traceable,
+    kind: SpecialKind,
+    near: &Point,
+    [low, high]: [(f64, f64); 2],
+) -> Result<Option<Point>> {
+    let width = high.0 - low.0;
+    let mut bracket = Bracket::new(low.1, high.1);
+    let mut best = None;
+    for _ in 0..LINEAR_STRETCH_MAX_EVALUATIONS {
+        let (share, is_last) = (bracket.guess(), bracket.is_last());
+        let at = low.0 + share * width;
+        let rounding = LINEAR_STRETCH_ROUNDING * at.abs();
+        if bracket.width() * width <= rounding || at <= low.0 || at >= high.0 {
+            break;
+        }
+        let Some(point) = analysis.linear_at(near, at, tracer.interrupt)? else {
+            break;
+        };
+        let slope = growth_of(analysis, kind, &point)?;
+        best = Some(point);
+        if slope == 0.0 || is_last || bracket.narrow(share, slope) * width <= rounding {
+            break;
+        }
+    }
+    if best.is_none() {
+        // The root is at an end, up to rounding.
+        let end = if low.1.abs() <= high.1.abs() { low.0 } else { high.0 };
+        best = analysis.linear_at(near, end, tracer.interrupt)?;
+    }
+    Ok(best)
 }
 
 /// The larger of two amplitudes, and of two motions of the contacts.

@@ -3,6 +3,7 @@
 mod index;
 mod language;
 mod layering;
+mod pairs;
 mod python;
 mod rust_interface;
 mod sizes;

@@ -17,22 +17,8 @@ const RECORDS: [&str; 5] = ["SolverOptions", "Fit", "Verification", "Reduction",
 /// Types with more fields, and their number.
 const WIDE: [(&str, usize); 0] = [];
 
-/// Types whose methods stand in more files, and their number: the first two have the public methods of a model and of a branch,
-/// each analysis in the room of its method.
-const SPREAD: [(&str, usize); 12] = [
-    ("Branch", 17),
-    ("BranchTracer", 9),
-    ("Condensed", 6),
-    ("Contact", 5),
-    ("ContactForces", 4),
-    ("Corrector", 6),
-    ("HarmonicBalance", 4),
-    ("Model", 21),
-    ("Search", 7),
-    ("Structure", 13),
-    ("Tree", 5),
-    ("Walk", 8),
-];
+/// Types whose methods stand in more files, and their number.
+const SPREAD: [(&str, usize); 0] = [];
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {

@@ -9,6 +9,7 @@ use crate::analysis::forced::inside_start::{Entry, Inside, in_sense_of};
 use crate::analysis::forced::odd_laws;
 use crate::analysis::forced::sampling::{Sampled, may_refine, required, with_samples};
 use crate::analysis::forced::unbounded_response;
+use crate::condense::blocks::more_harmonics;
 use crate::condense::by_factors::flexibility::Workspace;
 use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::condense::{Condensed, FlexibilityWay, ModelCache, Reference, Resolution};
@@ -531,7 +532,7 @@ fn condensed(
     interrupt: &Interrupt<'_>,
 ) -> Result<Condensed> {
     let shared = match fewer {
-        Some(fewer) => fewer.with_more_harmonics(model, options, interrupt)?,
+        Some(fewer) => more_harmonics::with_more_harmonics(fewer, model, options, interrupt)?,
         None => None,
     };
     let condensed = match shared {

@@ -6,10 +6,13 @@ use crate::analysis::forced::point_error::observed;
 use crate::analysis::forced::watched_responses::WatchedResponses;
 use crate::analysis::perturbed::branch_stability::BranchStability;
 use crate::condense::FlexibilityWay;
+use crate::condense::blocks::reduction::reduction;
 use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::condense::reduced_resonances;
 use crate::condense::{ModelCache, Reduction, Reference};
 use crate::continuation::corrector::Outcome;
+use crate::continuation::corrector::deflated;
+use crate::continuation::corrector::null_direction::null_direction;
 use crate::continuation::resolve::resolve;
 use crate::continuation::{Metric, Point, PointAt, Settings};
 use crate::error::{Result, boxed, try_copy, try_extend, try_vec};
@@ -152,7 +155,7 @@ impl<'a> ForcedDiscretised<'a> {
     ) -> Result<Self> {
         let resolution = levels.at(level)?;
         let reported = if levels.is_automatic() { 0 } else { solver.harmonics };
-        let reduction = resolution.condensed.reduction(model, solver, interrupt)?;
+        let reduction = reduction(&resolution.condensed, model, solver, interrupt)?;
         let mut branch = boxed(|| Branch::new(resolution, reduction, reported, response))?;
         if solver.stability.is_some() {
             branch.tell_stability();
@@ -232,7 +235,7 @@ impl<'a> ForcedDiscretised<'a> {
         let Equations { problem, corrector, .. } = &mut *self.resolutions.current;
         let metric = Metric::along(norm(at.unknowns()), &self.settings);
         self.state.stale = true;
-        corrector.null_direction(problem, &at.v, start, metric, interrupt)
+        null_direction(corrector, problem, &at.v, start, metric, interrupt)
     }
 
     /// Packed relative motions of the contacts in the current harmonics, from a motion of all degrees of freedom.
@@ -269,7 +272,7 @@ impl<'a> ForcedDiscretised<'a> {
         let metric = Metric::along(norm(near.unknowns()), &self.settings);
         self.state.stale = true;
         let Equations { problem, corrector, .. } = &mut *self.resolutions.current;
-        if !corrector.leave_known(problem, &mut beside.v, known, metric, interrupt)? {
+        if !deflated::leave_known(corrector, problem, &mut beside.v, known, metric, interrupt)? {
             return Ok(None);
         }
         let Some(found) = self.solve_at(&beside, interrupt)? else {

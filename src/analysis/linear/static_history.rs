@@ -77,7 +77,7 @@ pub fn static_history(
     solver.check()?;
     let count = check(history)?;
     model.check_matrices(false)?;
-    let mut walk = Walk {
+    let mut walk = HistoryWalk {
         model,
         solver,
         interrupt,
@@ -153,7 +153,7 @@ fn is_straight(begin: &[f64], middle: &[f64], end: &[f64]) -> bool {
     bend <= STATIC_HISTORY_STRAIGHT * size
 }
 
-struct Walk<'a> {
+struct HistoryWalk<'a> {
     model: &'a Model,
     solver: &'a SolverOptions,
     interrupt: &'a Interrupt<'a>,
@@ -161,7 +161,7 @@ struct Walk<'a> {
     size: f64,
 }
 
-impl Walk<'_> {
+impl HistoryWalk<'_> {
     /// The state at the end of a step, from the state at its beginning.
     fn to(&mut self, (from, begin): (Load, &StaticStep), to: Load, halvings: usize) -> Result<StaticStep> {
         let whole = self.state(to, &begin.places)?;

@@ -9,6 +9,7 @@ use crate::analysis::modes::mode_equations::LinearStart;
 use crate::analysis::modes::mode_guess;
 use crate::analysis::modes::mode_path::{Onset, course, trace};
 use crate::analysis::modes::mode_start::ModeStart;
+use crate::condense::blocks::reduction::reduction;
 use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache};
 use crate::continuation::step_control::StepControl;
@@ -169,7 +170,7 @@ fn on_wave(
     let response = solver.response_dof.unwrap_or(reference_dof);
     let reported = if levels.is_automatic() { 0 } else { solver.harmonics };
     let branch = boxed(|| {
-        let reduction = resolution.condensed.reduction(model, solver, interrupt)?;
+        let reduction = reduction(&resolution.condensed, model, solver, interrupt)?;
         Branch::new(resolution, reduction, reported, response)
     })?;
     let estimates = solver.estimate_error || levels.is_automatic();

@@ -3,6 +3,7 @@
 use crate::analysis::modes::mode_equations::{Equations, LinearStart};
 use crate::analysis::modes::mode_onset::OnsetSearch;
 use crate::condense::Reduction;
+use crate::continuation::corrector::null_direction::null_direction;
 use crate::continuation::resolve::resolve;
 use crate::continuation::{Metric, Point, Settings};
 use crate::error::{Result, boxed, try_copy};
@@ -127,7 +128,7 @@ impl<'a> ModeDiscretised<'a> {
     ) -> Result<Option<(Vec<f64>, f64)>> {
         let Equations { problem, corrector, .. } = &mut *self.resolutions.current;
         let metric = Metric::along(norm(at.unknowns()), &self.settings);
-        corrector.null_direction(problem, &at.v, start, metric, interrupt)
+        null_direction(corrector, problem, &at.v, start, metric, interrupt)
     }
 
     /// Notes whether the first point was found from the given guess.

@@ -2,6 +2,8 @@
 
 use crate::analysis::forced::forced_curve::alone;
 use crate::analysis::other_solutions::branch_switching::{Place, Tree};
+use crate::analysis::other_solutions::deflated_curves;
+use crate::analysis::other_solutions::subharmonic_net;
 use crate::error::{Result, Status};
 use crate::hooks::Hooks;
 use crate::model::Model;
@@ -65,10 +67,10 @@ fn seek(tree: &mut Tree<'_>, branch: &mut Branch, depth: usize, hooks: &mut Hook
         tree.add_over_force(branch, depth, hooks)?;
     }
     if sought > 2 && tree.left > 0 {
-        tree.add_subharmonics(branch, depth, hooks)?;
+        subharmonic_net::add_subharmonics(tree, branch, depth, hooks)?;
     }
     if sought > 3 && tree.left > 0 {
-        tree.add_deflated(branch, depth, hooks)?;
+        deflated_curves::add_deflated(tree, branch, depth, hooks)?;
     }
     Ok(())
 }

@@ -6,6 +6,7 @@ use crate::analysis::over_parameter::parameter_curve::CurveRecorder;
 use crate::analysis::over_parameter::parameter_range::{ParameterRange, settings, wanted};
 use crate::analysis::over_parameter::tracked_damping::TrackedDamping;
 use crate::condense::Condensed;
+use crate::condense::blocks::reduction;
 use crate::error::{Result, Status, fail, try_vec};
 use crate::harmonics::harmonic_levels::HarmonicLevels;
 use crate::hooks::Hooks;
@@ -111,7 +112,7 @@ pub(crate) fn follow(
         (to, interrupt),
     )?;
     let settings = settings(solver, range);
-    let reduction = resolution.condensed.reduction_with(first, solver, 0);
+    let reduction = reduction::reduction_with(&resolution.condensed, first, solver, 0);
     let highest = if levels.is_automatic() { 0 } else { solver.harmonics };
     let mut found = Branch::new(resolution, reduction, highest, branch.response_dof())?;
     found.set_mode(ModeData::new(

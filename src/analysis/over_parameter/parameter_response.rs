@@ -7,14 +7,15 @@ use crate::analysis::over_parameter::damping_maximum;
 use crate::analysis::over_parameter::followed::Followed;
 use crate::analysis::over_parameter::parameter_curve::CurveRecorder;
 use crate::analysis::over_parameter::parameter_range::{Follow, ParameterRange, settings, wanted};
+use crate::condense::blocks::reduction;
 use crate::condense::{Condensed, Reference};
 use crate::error::{Error, Result, Status, fail, try_push, try_vec};
 use crate::harmonics::harmonic_levels::HarmonicLevels;
 use crate::hooks::Hooks;
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
-use crate::options::Range;
-use crate::options::{ForcedOptions, Response, SolverOptions, check_responses};
+use crate::options::{ForcedOptions, Range, Response, SolverOptions, check_responses};
+use crate::results::motions::recovery;
 use crate::results::{Branch, HigherPeak, ParameterData, Special};
 use crate::sensitivity::{Parameter, ResponsePoint, TrackedResponse, design};
 
@@ -203,7 +204,7 @@ pub(crate) fn follow_from(
     let Some(omega) = branch.omega_at(point) else {
         return fail!(Internal, "a stored point has no frequency");
     };
-    let motion = branch.relative_motion_at(point, interrupt)?;
+    let motion = recovery::relative_motion_at(branch, point, interrupt)?;
     let levels = HarmonicLevels::new(first, solver, &forced_harmonics(first)?, |harmonics, _| {
         let options = SolverOptions { harmonics, ..*solver };
         Condensed::with_reference(first, &options, (omega, omega), Some(Reference::Complex), interrupt)
@@ -227,7 +228,7 @@ pub(crate) fn follow_from(
         interrupt,
     )?;
     let settings = settings(solver, range);
-    let reduction = resolution.condensed.reduction_with(first, solver, 0);
+    let reduction = reduction::reduction_with(&resolution.condensed, first, solver, 0);
     let highest = if levels.is_automatic() { 0 } else { solver.harmonics };
     let mut found = Branch::new(resolution, reduction, highest, branch.response_dof())?;
     let recorder = CurveRecorder::new(

@@ -5,7 +5,7 @@ use crate::hooks::Hooks;
 use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::options::TimeOptions;
-use crate::time_integration::{EventLoop, Observers, Search, Sensitivity, State, System, state_of};
+use crate::time_integration::{EventLoop, Observers, Sensitivity, State, SteadySearch, System, state_of};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the smallest kick";
@@ -102,7 +102,8 @@ impl<'a> Kicked<'a> {
                 tolerance: TIGHT,
                 ..TimeOptions::default()
             };
-            let Some(steady) = Search::new(&mut system, &mut event_loop, &options, hooks, start)?.closest()? else {
+            let Some(steady) = SteadySearch::new(&mut system, &mut event_loop, &options, hooks, start)?.closest()?
+            else {
                 return fail!(
                     NoConvergence,
                     "shooting did not converge from the {name}: it has too few harmonics"

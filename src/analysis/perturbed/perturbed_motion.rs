@@ -9,7 +9,7 @@ use crate::model::matrices::structure::Structure;
 use crate::options::{FloquetOptions, TimeOptions};
 use crate::results::Floquet;
 use crate::stability::{Blocks, Closure, Known, closures, multipliers_of};
-use crate::time_integration::{EventLoop, HarmonicAnalysis, Observers, Search, State, Steady, System};
+use crate::time_integration::{EventLoop, HarmonicAnalysis, Observers, State, Steady, SteadySearch, System};
 use crate::time_integration::{check_shooting, state_of, state_of_sector};
 use num_complex::Complex64;
 
@@ -236,7 +236,7 @@ fn shoot(
         let mut half = system.folded()?;
         let mut in_half = EventLoop::new(&half, options.tolerance)?;
         let start = state.fold(system)?;
-        let mut search = Search::new(&mut half, &mut in_half, options, hooks, start)?;
+        let mut search = SteadySearch::new(&mut half, &mut in_half, options, hooks, start)?;
         if motion.quick {
             search = search.quick();
         }
@@ -247,7 +247,7 @@ fn shoot(
             steady
         }));
     }
-    let mut search = Search::new(system, event_loop, options, hooks, state)?;
+    let mut search = SteadySearch::new(system, event_loop, options, hooks, state)?;
     if motion.autonomous {
         search = search.free_frequency();
     }

@@ -119,7 +119,7 @@ pub fn smallest_kick(
         multiplier: f64::NAN,
         verified: false,
     };
-    let mut search = Search {
+    let mut search = KickSearch {
         model,
         omega: lower.0,
         lower: &lower.1,
@@ -160,7 +160,7 @@ fn harmonics(
 }
 
 /// Search for the smallest impulse over the phases of the forces.
-struct Search<'a> {
+struct KickSearch<'a> {
     model: &'a Model,
     omega: f64,
     lower: &'a [Complex64],
@@ -172,7 +172,7 @@ struct Search<'a> {
     mobility: f64,
 }
 
-impl<'a> Search<'a> {
+impl<'a> KickSearch<'a> {
     fn at(&self, phase: f64, hooks: &mut Hooks<'_>) -> Result<Kicked<'a>> {
         Kicked::new(
             (self.model, self.omega, self.dof),

@@ -3,7 +3,7 @@
 use crate::analysis::residual_states::band_ends::{Begun, state_of, with_ends};
 use crate::analysis::residual_states::band_line::line;
 use crate::analysis::residual_states::band_refinement::{BAND_REFINEMENT_MOST_UNKNOWNS, Refinement};
-use crate::analysis::residual_states::band_search::Search;
+use crate::analysis::residual_states::band_search::BandSearch;
 use crate::analysis::residual_states::free_points::FreePoints;
 use crate::analysis::residual_states::freedom::free_sliders;
 use crate::analysis::residual_states::held_sliders::{HeldSliders, HeldState};
@@ -225,7 +225,7 @@ fn along(held: &HeldSliders<'_>, first: HeldState) -> Result<Begun> {
 
 fn searched(held: &HeldSliders<'_>, first: HeldState, starts: usize) -> Result<Begun> {
     let units = held.distances(&first)?;
-    let mut search = Search { held, units, solved: 0 };
+    let mut search = BandSearch { held, units, solved: 0 };
     let (mut low, mut high): (HeldState, HeldState) = (first.clone(), first.clone());
     let mut gains = [f64::INFINITY; 2];
     let Some(within) = search.within(first)? else {

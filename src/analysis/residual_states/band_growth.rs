@@ -1,7 +1,7 @@
 //! Contacts that slip in the state of a branch and stick through the period at an end of its band: their residual forces are free
 //! there, too, and the search goes on from that end with them.
 
-use crate::analysis::residual_states::band_search::Search;
+use crate::analysis::residual_states::band_search::BandSearch;
 use crate::analysis::residual_states::freedom::free_sliders;
 use crate::analysis::residual_states::held_sliders::{HeldSliders, HeldState};
 use crate::analysis::residual_states::stuck_contacts::StuckSlider;
@@ -61,7 +61,7 @@ pub(crate) fn grown<'a>(
     )?;
     let first = more.first(&state.set, &state.motion, state.omega)?;
     let units = more.distances(&first)?;
-    let mut search = Search {
+    let mut search = BandSearch {
         held: &more,
         units,
         solved: 1,

@@ -78,7 +78,7 @@ pub(crate) fn line(held: &HeldSliders<'_>, first: HeldState) -> Result<Line> {
         try_push(&mut line.states, first, CONTEXT)?;
         return Ok(line);
     }
-    let mut walk = Walk { held, width, solved: 0 };
+    let mut walk = LineWalk { held, width, solved: 0 };
     let first = walk.within(first)?;
     let (mut below, reached_below) = walk.up_to_limit(&first, -1.0)?;
     let (mut above, reached_above) = walk.up_to_limit(&first, 1.0)?;
@@ -94,13 +94,13 @@ pub(crate) fn line(held: &HeldSliders<'_>, first: HeldState) -> Result<Line> {
     Ok(line)
 }
 
-struct Walk<'h, 'a> {
+struct LineWalk<'h, 'a> {
     held: &'h HeldSliders<'a>,
     width: f64,
     solved: usize,
 }
 
-impl Walk<'_, '_> {
+impl LineWalk<'_, '_> {
     fn solve(&mut self, place: f64, from: &HeldState) -> Result<Option<HeldState>> {
         self.solved += 1;
         self.held.find(&[place], from)

@@ -6,7 +6,7 @@
 //! error of the last one where each doubling halves the error at least, as with friction, whose harmonics fall as h⁻³.
 
 use crate::analysis::residual_states::band_growth::Grown;
-use crate::analysis::residual_states::band_search::Search;
+use crate::analysis::residual_states::band_search::BandSearch;
 use crate::analysis::residual_states::held_sliders::{HeldSliders, HeldState};
 use crate::analysis::residual_states::stuck_contacts::StuckSlider;
 use crate::error::{Result, Status, try_push};
@@ -96,7 +96,7 @@ fn doubled<'a>(
         first => first?,
     };
     let units = more.distances(&first)?;
-    let mut search = Search {
+    let mut search = BandSearch {
         held: &more,
         units,
         solved: 1,

@@ -45,7 +45,7 @@ pub(crate) struct Found {
 }
 
 /// Search for both ends of a band with several free sliders.
-pub(crate) struct Search<'h, 'a> {
+pub(crate) struct BandSearch<'h, 'a> {
     pub held: &'h HeldSliders<'a>,
     /// Units of the places: distances over which the sliders can be dragged.
     pub units: Vec<f64>,
@@ -53,7 +53,7 @@ pub(crate) struct Search<'h, 'a> {
     pub solved: usize,
 }
 
-impl Search<'_, '_> {
+impl BandSearch<'_, '_> {
     fn solve(&mut self, places: &[f64], from: &HeldState) -> Result<Option<HeldState>> {
         self.solved += 1;
         self.held.find(places, from)

@@ -4,7 +4,7 @@
 use crate::analysis::forced_response::forced_response;
 use crate::analysis::residual_states::band_corners::corners;
 use crate::analysis::residual_states::band_growth::Grown;
-use crate::analysis::residual_states::band_search::Search;
+use crate::analysis::residual_states::band_search::BandSearch;
 use crate::analysis::residual_states::freedom::free_sliders;
 use crate::analysis::residual_states::held_sliders::{HeldSliders, HeldState};
 use crate::analysis::residual_states::stuck_contacts::{StuckSlider, keeps_force};
@@ -255,7 +255,7 @@ pub(crate) fn within_limits<'a>(
         first => first?,
     };
     let units = held.distances(&first)?;
-    let mut search = Search {
+    let mut search = BandSearch {
         held: &held,
         units,
         solved: 0,
@@ -269,7 +269,7 @@ pub(crate) fn within_limits<'a>(
 /// # Errors
 /// As [`HeldSliders::find`].
 pub(crate) fn climbed<'a>(held: &Rc<HeldSliders<'a>>, first: &HeldState, sign: f64) -> Result<Grown<'a>> {
-    let mut search = Search {
+    let mut search = BandSearch {
         held,
         units: held.distances(first)?,
         solved: 0,

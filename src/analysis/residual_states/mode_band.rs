@@ -159,7 +159,7 @@ pub fn mode_band(
         guess: None,
         ..*range
     };
-    let mut search = Search {
+    let mut search = ModeBandSearch {
         model,
         solver,
         range,
@@ -238,7 +238,7 @@ struct Solved {
     is_dragged: bool,
 }
 
-struct Search<'a> {
+struct ModeBandSearch<'a> {
     model: &'a Model,
     solver: SolverOptions,
     range: ModeOptions<'a>,
@@ -251,7 +251,7 @@ struct Search<'a> {
     is_complete: bool,
 }
 
-impl Search<'_> {
+impl ModeBandSearch<'_> {
     fn value(&self, state: &ModeBandState) -> f64 {
         match self.of {
             ModeBandOf::Damping => state.damping_ratio,

@@ -4,6 +4,7 @@
 use crate::analysis::forced::phase_direction::phase_direction;
 use crate::analysis::synthesis::oscillator::{Load, State};
 use crate::condense::Condensed;
+use crate::condense::blocks::under_force::under_force;
 use crate::continuation::corrector::{Corrector, Outcome};
 use crate::continuation::special_points::{Locator, SpecialPoint};
 use crate::continuation::step_control::StepControl;
@@ -79,9 +80,7 @@ fn computed(
     if !(width > 0.0 && omega > 0.0) {
         return Ok(None);
     }
-    let forced = peak
-        .condensed
-        .under_force(&load.force, damping, 2.0 * load.ratio * state.omega)?;
+    let forced = under_force(peak.condensed, &load.force, damping, 2.0 * load.ratio * state.omega)?;
     let range = Range::new((omega - width).max(0.1 * omega), omega + width);
     let mut problem = HarmonicBalance::new(&forced, peak.response_dof, range, peak.samples, None, interrupt)?;
     problem.set_factorised(true);

@@ -14,61 +14,64 @@ use std::sync::Arc;
 
 const CONTEXT: &str = "the matrices per harmonic";
 
-impl Condensed {
-    /// The model of a forced response with the harmonics of `options`, no fewer than these; `None` where the structure is on
-    /// bases, or another reference stiffness is quicker.
-    ///
-    /// # Errors
-    /// As [`Self::new`].
-    pub fn with_more_harmonics(
-        &self,
-        model: &Model,
-        options: &SolverOptions,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<Option<Self>> {
-        let active = &self.contacts.classes.active;
-        let set = carried(model, options, &forced_harmonics(model, options)?, active)?;
-        let unknowns = self.coordinates() * set.packed_len();
-        if self.is_reduced() || quicker_reference(model, unknowns) != self.reference {
-            return Ok(None);
-        }
-        if self.wave.tuned.is_some() {
-            within_matrices(options.memory_limit, model, set.numbers())?;
-        } else {
-            within_directly(options.memory_limit, model, set.numbers())?;
-        }
-        let (_, representatives) = assign_coordinates(model, active, interrupt)?;
-        let contacts = (&self.contacts.classes, &representatives[..]);
-        let kappa = |c: usize, number: usize| self.reference.kappa(self.contacts.reference_stiffness[c], number);
-        let mut blocks = Vec::new();
-        for (i, &number) in set.numbers().iter().enumerate() {
-            interrupt.part(Phase::Condensation, i, set.numbers().len())?;
-            let known = of_same_wave(model, number, &self.blocks.iter().chain(&blocks));
-            let mut block = match known {
-                Some(known) => shared_block(model, number, known, contacts, kappa)?,
-                None => harmonic_block(model, number, contacts, |c| kappa(c, number), interrupt)?,
-            };
-            if let Some(own) = self.blocks.iter().find(|own| own.number == number) {
-                block.load.force.copy_from_slice(&own.load.force);
-                let unbalance = own.load.unbalance.as_ref();
-                block.load.unbalance = unbalance.map(|f| try_copy(f, CONTEXT)).transpose()?;
-            }
-            try_push(&mut blocks, block, CONTEXT)?;
-        }
-        let tuned = match (&self.wave.tuned, self.wave.wheel) {
-            (Some(_), Some((sectors, _))) => TunedPlan::new(&blocks, sectors, interrupt)?.map(Arc::new),
-            _ => None,
-        };
-        let mut more = self.with_blocks(set, blocks)?;
-        more.wave.tuned = tuned;
-        more.refinement = options.refinement;
-        Ok(Some(more))
+/// The model of a forced response with the harmonics of `options`, no fewer than these; `None` where the structure is on
+/// bases, or another reference stiffness is quicker.
+///
+/// # Errors
+/// As [`Condensed::new`].
+pub(crate) fn with_more_harmonics(
+    condensed: &Condensed,
+    model: &Model,
+    options: &SolverOptions,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<Condensed>> {
+    let active = &condensed.contacts.classes.active;
+    let set = carried(model, options, &forced_harmonics(model, options)?, active)?;
+    let unknowns = condensed.coordinates() * set.packed_len();
+    if condensed.is_reduced() || quicker_reference(model, unknowns) != condensed.reference {
+        return Ok(None);
     }
+    if condensed.wave.tuned.is_some() {
+        within_matrices(options.memory_limit, model, set.numbers())?;
+    } else {
+        within_directly(options.memory_limit, model, set.numbers())?;
+    }
+    let (_, representatives) = assign_coordinates(model, active, interrupt)?;
+    let contacts = (&condensed.contacts.classes, &representatives[..]);
+    let kappa = |c: usize, number: usize| {
+        condensed
+            .reference
+            .kappa(condensed.contacts.reference_stiffness[c], number)
+    };
+    let mut blocks = Vec::new();
+    for (i, &number) in set.numbers().iter().enumerate() {
+        interrupt.part(Phase::Condensation, i, set.numbers().len())?;
+        let known = of_same_wave(model, number, &condensed.blocks.iter().chain(&blocks));
+        let mut block = match known {
+            Some(known) => shared_block(model, number, known, contacts, kappa)?,
+            None => harmonic_block(model, number, contacts, |c| kappa(c, number), interrupt)?,
+        };
+        if let Some(own) = condensed.blocks.iter().find(|own| own.number == number) {
+            block.load.force.copy_from_slice(&own.load.force);
+            let unbalance = own.load.unbalance.as_ref();
+            block.load.unbalance = unbalance.map(|f| try_copy(f, CONTEXT)).transpose()?;
+        }
+        try_push(&mut blocks, block, CONTEXT)?;
+    }
+    let tuned = match (&condensed.wave.tuned, condensed.wave.wheel) {
+        (Some(_), Some((sectors, _))) => TunedPlan::new(&blocks, sectors, interrupt)?.map(Arc::new),
+        _ => None,
+    };
+    let mut more = condensed.with_blocks(set, blocks)?;
+    more.wave.tuned = tuned;
+    more.refinement = options.refinement;
+    Ok(Some(more))
 }
 
 #[cfg(test)]
 mod tests {
     use crate::condense::Condensed;
+    use crate::condense::blocks::more_harmonics::with_more_harmonics;
     use crate::condense::by_factors::flexibility::Workspace;
     use crate::condense::test_chains::{DAMPED, chain};
     use crate::contact::Contact;
@@ -91,7 +94,7 @@ mod tests {
             };
             let condensed = |harmonics| Condensed::new(&model, &options(harmonics), 0.7, &interrupt).unwrap();
             let (few, many) = (condensed(9), condensed(24));
-            let more = few.with_more_harmonics(&model, &options(24), &interrupt).unwrap();
+            let more = with_more_harmonics(&few, &model, &options(24), &interrupt).unwrap();
             let Some(more) = more else {
                 assert_ne!(few.reference(), many.reference());
                 continue;

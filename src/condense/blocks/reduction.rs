@@ -46,48 +46,61 @@ pub struct Reduction {
     pub flexibility_way: FlexibilityWay,
 }
 
-impl Condensed {
-    /// The parts of the problem that were removed.
-    ///
-    /// # Errors
-    /// Those of [`Model::rigid_modes`]; `StoppedByCaller`.
-    pub fn reduction(&self, model: &Model, options: &SolverOptions, interrupt: &Interrupt<'_>) -> Result<Reduction> {
-        let held_by_contacts = if self.set.has_mean() && self.coordinates() > 0 {
-            model.rigid_modes(0, interrupt)?
-        } else {
-            0
-        };
-        Ok(self.reduction_with(model, options, held_by_contacts))
-    }
+/// The parts of the problem that were removed.
+///
+/// # Errors
+/// Those of [`Model::rigid_modes`]; `StoppedByCaller`.
+pub(crate) fn reduction(
+    condensed: &Condensed,
+    model: &Model,
+    options: &SolverOptions,
+    interrupt: &Interrupt<'_>,
+) -> Result<Reduction> {
+    let held_by_contacts = if condensed.set.has_mean() && condensed.coordinates() > 0 {
+        model.rigid_modes(0, interrupt)?
+    } else {
+        0
+    };
+    Ok(reduction_with(condensed, model, options, held_by_contacts))
+}
 
-    /// How the flexibility of the lowest vibrating harmonic is made, as far as it is known before a sweep.
-    fn flexibility_way(&self) -> FlexibilityWay {
-        let vibrating = self.blocks.iter().find(|block| block.number > 0);
-        vibrating.map_or(FlexibilityWay::SingleFrequency, HarmonicBlock::flexibility_way)
-    }
+/// How the flexibility of the lowest vibrating harmonic is made, as far as it is known before a sweep.
+fn flexibility_way(condensed: &Condensed) -> FlexibilityWay {
+    let vibrating = condensed.blocks.iter().find(|block| block.number > 0);
+    vibrating.map_or(FlexibilityWay::SingleFrequency, HarmonicBlock::flexibility_way)
+}
 
-    /// The parts of the problem that were removed, as `reduction` gives them, with a known number of rigid-body modes
-    /// that contacts alone hold.
-    #[must_use]
-    pub fn reduction_with(&self, model: &Model, options: &SolverOptions, held_by_contacts: usize) -> Reduction {
-        Reduction {
-            sectors: model.structure().sectors(),
-            degrees_of_freedom: self.degrees.given(),
-            coordinates: self.coordinates(),
-            contacts: self.contacts(),
-            never_slipping: self.contacts.classes.never_slipping.len(),
-            inert: self.contacts.classes.inert(),
-            harmonics_asked: options.harmonics,
-            harmonics_carried: self.set.numbers().len(),
-            mean_carried: self.set.has_mean(),
-            even_removed: self.set.is_odd(),
-            unknowns: self.unknowns(),
-            held_by_contacts,
-            basis: if self.is_reduced() { self.ndof() } else { 0 },
-            certificate: self.certificate(),
-            response_harmonic: self.set.numbers().get(self.set.watched()).copied().unwrap_or(0),
-            guess_used: None,
-            flexibility_way: self.flexibility_way(),
-        }
+/// The parts of the problem that were removed, as `reduction` gives them, with a known number of rigid-body modes
+/// that contacts alone hold.
+#[must_use]
+pub(crate) fn reduction_with(
+    condensed: &Condensed,
+    model: &Model,
+    options: &SolverOptions,
+    held_by_contacts: usize,
+) -> Reduction {
+    Reduction {
+        sectors: model.structure().sectors(),
+        degrees_of_freedom: condensed.degrees.given(),
+        coordinates: condensed.coordinates(),
+        contacts: condensed.contacts(),
+        never_slipping: condensed.contacts.classes.never_slipping.len(),
+        inert: condensed.contacts.classes.inert(),
+        harmonics_asked: options.harmonics,
+        harmonics_carried: condensed.set.numbers().len(),
+        mean_carried: condensed.set.has_mean(),
+        even_removed: condensed.set.is_odd(),
+        unknowns: condensed.unknowns(),
+        held_by_contacts,
+        basis: if condensed.is_reduced() { condensed.ndof() } else { 0 },
+        certificate: condensed.certificate(),
+        response_harmonic: condensed
+            .set
+            .numbers()
+            .get(condensed.set.watched())
+            .copied()
+            .unwrap_or(0),
+        guess_used: None,
+        flexibility_way: flexibility_way(condensed),
     }
 }

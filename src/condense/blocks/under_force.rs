@@ -11,30 +11,28 @@ use std::sync::Arc;
 
 const CONTEXT: &str = "the matrices per harmonic";
 
-impl Condensed {
-    /// The structure of a mode under the force `force` in the fundamental, in the caller's unit, without artificial
-    /// damping. To the damping of harmonic h are added `damping(h)` and `by_mass` times the mass matrix.
-    ///
-    /// # Errors
-    /// Those of `damping`; `OutOfMemory`.
-    pub fn under_force(
-        &self,
-        force: &[Complex64],
-        damping: impl Fn(usize) -> Result<Option<Csc>>,
-        by_mass: f64,
-    ) -> Result<Self> {
-        let mut blocks = Vec::new();
-        for block in &self.blocks {
-            let mut forced = block.with_damping(damping(block.number)?.as_ref(), by_mass)?;
-            if block.number == 1 {
-                for (to, f) in forced.load.force.iter_mut().zip(force) {
-                    *to = f / self.length;
-                }
+/// The structure of a mode under the force `force` in the fundamental, in the caller's unit, without artificial
+/// damping. To the damping of harmonic h are added `damping(h)` and `by_mass` times the mass matrix.
+///
+/// # Errors
+/// Those of `damping`; `OutOfMemory`.
+pub(crate) fn under_force(
+    condensed: &Condensed,
+    force: &[Complex64],
+    damping: impl Fn(usize) -> Result<Option<Csc>>,
+    by_mass: f64,
+) -> Result<Condensed> {
+    let mut blocks = Vec::new();
+    for block in &condensed.blocks {
+        let mut forced = block.with_damping(damping(block.number)?.as_ref(), by_mass)?;
+        if block.number == 1 {
+            for (to, f) in forced.load.force.iter_mut().zip(force) {
+                *to = f / condensed.length;
             }
-            try_push(&mut blocks, forced, CONTEXT)?;
         }
-        self.with_blocks(self.set.try_clone()?, blocks)
+        try_push(&mut blocks, forced, CONTEXT)?;
     }
+    condensed.with_blocks(condensed.set.try_clone()?, blocks)
 }
 
 impl HarmonicBlock {

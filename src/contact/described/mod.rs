@@ -7,4 +7,4 @@ pub mod iwan;
 pub mod patch;
 pub mod relative_motion;
 pub mod rigid_point;
-mod saved_contact;
+pub(crate) mod saved_contact;

@@ -30,7 +30,7 @@ use crate::contact::forms::piece::Piece;
 use crate::error::{Result, fail};
 use crate::fourier::{Extremum, HarmonicSet, VALUES_OF_A_CROSSING};
 use crate::interrupt::Interrupt;
-use slide_walk::{Event, Walk, lateness};
+use slide_walk::{Event, SlideWalk, lateness};
 use std::f64::consts::PI;
 
 mod slide_walk;
@@ -78,7 +78,7 @@ impl SlidingMass {
     /// Follows half a turn from an event on; `None` where the mass sticks for ever.
     fn half_turn(
         &self,
-        walk: &mut Walk<'_>,
+        walk: &mut SlideWalk<'_>,
         begin: Event,
         pieces: &mut Vec<Piece>,
         interrupt: &Interrupt<'_>,
@@ -150,7 +150,7 @@ impl PiecewiseLinear for SlidingMass {
         if !set.is_odd() {
             return fail!(Internal, "a sliding mass needs odd harmonics alone");
         }
-        let mut walk = Walk {
+        let mut walk = SlideWalk {
             set,
             motion,
             extrema: turning_points,

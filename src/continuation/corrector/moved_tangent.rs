@@ -10,8 +10,6 @@
 //! up to a share that falls with the square of the steps.
 
 use crate::continuation::Metric;
-use crate::continuation::corrector::Corrector;
-use crate::linalg::norm;
 use core::array::from_fn;
 
 /// Least share of the way between two points that leads along the row.
@@ -28,27 +26,26 @@ const APART: f64 = 0.1;
 const MOVED_TANGENT_SMALL: f64 = 1e-6;
 const MOVED_TANGENT_NEGLIGIBLE: f64 = 1e-9;
 
-impl Corrector {
-    /// Weights of the current matrix and of those at the two points before in the slope K′; `None` where they do not
-    /// belong to one branch.
-    pub(super) fn slope_weights(&self, metric: Metric, row: &[f64]) -> Option<[f64; 3]> {
-        let [here, before, oldest] = &self.matrices_at;
-        let way = |from: &[f64], to: &[f64]| {
-            let way = metric.along_row(from, to, row);
-            (way > MOVED_TANGENT_ALONG * metric.distance(from, to)).then_some(way)
-        };
-        // Near-rigid contacts have matrices whose rounding would be amplified.
-        let is_small = |last: &f64| {
-            (MOVED_TANGENT_NEGLIGIBLE * last..=MOVED_TANGENT_SMALL * last).contains(&norm(&self.memory.step))
-        };
-        let last = way(before, here).filter(|last| is_small(last) && self.at.rounding == 0.0)?;
-        let slope = [1.0 / last, -1.0 / last, 0.0];
-        let Some(first) = way(oldest, before).filter(|first| *first > APART * last) else {
-            return Some(slope);
-        };
-        let (share, earlier) = (last / (last + first), [0.0, 1.0 / first, -1.0 / first]);
-        Some(from_fn(|i| slope[i] + share * (slope[i] - earlier[i])))
-    }
+/// Weights of the current matrix and of those at the two points before, given with their points, in the slope K′ of a step
+/// whose length is given; `None` where they do not belong to one branch.
+pub(super) fn slope_weights(
+    [here, before, oldest]: &[Vec<f64>; 3],
+    step: f64,
+    metric: Metric,
+    row: &[f64],
+) -> Option<[f64; 3]> {
+    let way = |from: &[f64], to: &[f64]| {
+        let way = metric.along_row(from, to, row);
+        (way > MOVED_TANGENT_ALONG * metric.distance(from, to)).then_some(way)
+    };
+    let is_small = |last: &f64| (MOVED_TANGENT_NEGLIGIBLE * last..=MOVED_TANGENT_SMALL * last).contains(&step);
+    let last = way(before, here).filter(is_small)?;
+    let slope = [1.0 / last, -1.0 / last, 0.0];
+    let Some(first) = way(oldest, before).filter(|first| *first > APART * last) else {
+        return Some(slope);
+    };
+    let (share, earlier) = (last / (last + first), [0.0, 1.0 / first, -1.0 / first]);
+    Some(from_fn(|i| slope[i] + share * (slope[i] - earlier[i])))
 }
 
 #[cfg(test)]
@@ -57,8 +54,9 @@ mod tests {
     use crate::condense::Condensed;
     use crate::condense::test_chains::structure;
     use crate::contact::Contact;
-    use crate::continuation::corrector::Outcome;
+    use crate::continuation::corrector::{Corrector, Outcome};
     use crate::interrupt::Interrupt;
+    use crate::linalg::norm;
     use crate::options::SolverOptions;
     use crate::problem::Problem;
     use crate::problem::harmonic_balance::HarmonicBalance;

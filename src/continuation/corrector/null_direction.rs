@@ -22,77 +22,75 @@ const CONVERGED: f64 = 1e-9;
 /// Kind: rounding.
 const NULL_DIRECTION_SHIFT: f64 = 1e-9;
 
-impl Corrector {
-    /// The null vector φ of the Jacobian at `v` = (u, p), from a start in u, as a direction (φ, 0) of length 1, with the size of its
-    /// eigenvalue; `None` where the iteration does not converge to a real vector.
-    ///
-    /// # Errors
-    /// Those of the problem; `StoppedByCaller`; `OutOfMemory`.
-    pub fn null_direction(
-        &mut self,
-        problem: &mut dyn Problem,
-        v: &[f64],
-        start: &[f64],
-        metric: Metric,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<Option<(Vec<f64>, f64)>> {
-        const CONTEXT: &str = "the direction of a bifurcation";
-        let n = v.len() - 1;
-        let mut row = try_vec(n + 1, 0.0, CONTEXT)?;
-        row[n] = 1.0;
-        let mut at = try_copy(v, CONTEXT)?;
-        for shift in [0.0, NULL_DIRECTION_SHIFT] {
-            for (x, start) in at[..n].iter_mut().zip(start) {
-                *x += shift * metric.u * start;
-            }
-            if !self.evaluates(problem, &at)? {
-                return Ok(None);
-            }
-            self.factors = Factors::None;
-            self.update(problem, metric, &row, interrupt)?;
-            if self.factor(problem, interrupt)? {
-                return self.inverse_iteration(problem, (start, &row), metric, interrupt);
-            }
+/// The null vector φ of the Jacobian at `v` = (u, p), from a start in u, as a direction (φ, 0) of length 1, with the size of its
+/// eigenvalue; `None` where the iteration does not converge to a real vector.
+///
+/// # Errors
+/// Those of the problem; `StoppedByCaller`; `OutOfMemory`.
+pub(crate) fn null_direction(
+    corrector: &mut Corrector,
+    problem: &mut dyn Problem,
+    v: &[f64],
+    start: &[f64],
+    metric: Metric,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<(Vec<f64>, f64)>> {
+    const CONTEXT: &str = "the direction of a bifurcation";
+    let n = v.len() - 1;
+    let mut row = try_vec(n + 1, 0.0, CONTEXT)?;
+    row[n] = 1.0;
+    let mut at = try_copy(v, CONTEXT)?;
+    for shift in [0.0, NULL_DIRECTION_SHIFT] {
+        for (x, start) in at[..n].iter_mut().zip(start) {
+            *x += shift * metric.u * start;
         }
-        Ok(None)
+        if !corrector.evaluates(problem, &at)? {
+            return Ok(None);
+        }
+        corrector.factors = Factors::None;
+        corrector.update(problem, metric, &row, interrupt)?;
+        if corrector.factor(problem, interrupt)? {
+            return inverse_iteration(corrector, problem, (start, &row), metric, interrupt);
+        }
     }
+    Ok(None)
+}
 
-    fn inverse_iteration(
-        &mut self,
-        problem: &mut dyn Problem,
-        (start, row): (&[f64], &[f64]),
-        metric: Metric,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<Option<(Vec<f64>, f64)>> {
-        let n = start.len();
-        let mut last = try_vec(n + 1, 0.0, "the direction of a bifurcation")?;
-        let inverse = 1.0 / norm(start);
-        for (x, s) in last.iter_mut().zip(start) {
-            *x = s * inverse;
-        }
-        for _ in 0..NULL_DIRECTION_MAX_ITERATIONS {
-            interrupt.check()?;
-            self.memory.step.copy_from_slice(&last);
-            if !self.solve(problem, (metric, row), TANGENT_ERROR, interrupt)? {
-                return Ok(None);
-            }
-            self.memory.step[n] = 0.0;
-            let size = norm(&self.memory.step);
-            if !(size > 0.0 && size.is_finite()) {
-                return Ok(None);
-            }
-            let cosine = dot(&self.memory.step, &last) / size;
-            let scale = 1.0 / size.copysign(cosine);
-            let mut change = 0.0_f64;
-            for (x, s) in last.iter_mut().zip(&self.memory.step) {
-                let next = s * scale;
-                change = change.hypot(next - *x);
-                *x = next;
-            }
-            if change <= CONVERGED {
-                return Ok(Some((last, 1.0 / size)));
-            }
-        }
-        Ok(None)
+fn inverse_iteration(
+    corrector: &mut Corrector,
+    problem: &mut dyn Problem,
+    (start, row): (&[f64], &[f64]),
+    metric: Metric,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<(Vec<f64>, f64)>> {
+    let n = start.len();
+    let mut last = try_vec(n + 1, 0.0, "the direction of a bifurcation")?;
+    let inverse = 1.0 / norm(start);
+    for (x, s) in last.iter_mut().zip(start) {
+        *x = s * inverse;
     }
+    for _ in 0..NULL_DIRECTION_MAX_ITERATIONS {
+        interrupt.check()?;
+        corrector.memory.step.copy_from_slice(&last);
+        if !corrector.solve(problem, (metric, row), TANGENT_ERROR, interrupt)? {
+            return Ok(None);
+        }
+        corrector.memory.step[n] = 0.0;
+        let size = norm(&corrector.memory.step);
+        if !(size > 0.0 && size.is_finite()) {
+            return Ok(None);
+        }
+        let cosine = dot(&corrector.memory.step, &last) / size;
+        let scale = 1.0 / size.copysign(cosine);
+        let mut change = 0.0_f64;
+        for (x, s) in last.iter_mut().zip(&corrector.memory.step) {
+            let next = s * scale;
+            change = change.hypot(next - *x);
+            *x = next;
+        }
+        if change <= CONVERGED {
+            return Ok(Some((last, 1.0 / size)));
+        }
+    }
+    Ok(None)
 }

@@ -207,7 +207,7 @@ impl OnModes {
             add_other_senses(&mut to.diameters, model.structure().sectors())?;
         }
         let mut small = model.try_clone()?;
-        small.structure = small.structure.on_shapes(&of.held, order, blocks)?;
+        small.structure = on_shapes(&small.structure, &of.held, order, blocks)?;
         small.springs.clear();
         small.excitation = Excitation::default();
         small.kept = KeptWaves::default();
@@ -290,20 +290,18 @@ fn add_other_senses(diameters: &mut Vec<Option<KeptMatrix>>, sectors: usize) -> 
     Ok(())
 }
 
-impl Structure {
-    /// A structure of the given order whose first degrees of freedom are those of `held`, with the given matrices,
-    /// which contain all damping and stiffness.
-    fn on_shapes(&self, held: &[usize], order: usize, blocks: [Blocks; KINDS]) -> Result<Self> {
-        let mut small = Self::new(order, self.sectors())?;
-        small.degrees = self.degrees().retaining(held, order)?;
-        small.engine_order = self.engine_order();
-        small.blocks = Arc::new(blocks);
-        Ok(small)
-    }
+/// A structure of the given order whose first degrees of freedom are those of `held`, with the given matrices,
+/// which contain all damping and stiffness.
+fn on_shapes(structure: &Structure, held: &[usize], order: usize, blocks: [Blocks; KINDS]) -> Result<Structure> {
+    let mut small = Structure::new(order, structure.sectors())?;
+    small.degrees = structure.degrees().retaining(held, order)?;
+    small.engine_order = structure.engine_order();
+    small.blocks = Arc::new(blocks);
+    Ok(small)
+}
 
-    /// The nodal diameter of a harmonic; `true` if it travels against the sense in which sector s + 1 lags.
-    pub(crate) fn wave_of(&self, harmonic: usize) -> (usize, bool) {
-        let turns = i128::from(harmonic as u64) * i128::from(self.engine_order());
-        self.fold(turns.rem_euclid(self.sectors() as i128) as i64)
-    }
+/// The nodal diameter of a harmonic.
+pub(crate) fn wave_of(structure: &Structure, harmonic: usize) -> (usize, bool) {
+    let turns = i128::from(harmonic as u64) * i128::from(structure.engine_order());
+    structure.fold(turns.rem_euclid(structure.sectors() as i128) as i64)
 }

@@ -12,116 +12,88 @@ use crate::model::matrices::structure::Structure;
 use num_complex::Complex64;
 use std::sync::Arc;
 
-impl Model {
-    /// Sets forces on a sector that follow the motion of its neighbours: with f on the right-hand side,
-    /// f_i = Σ_k Σ_j c(k, i, j)·x_j of the sector at the distance `offsets[k]`, or of velocities. `coefficients` has a
-    /// square matrix over `dofs` for each offset, row after row. A later call of the same form replaces an earlier one;
-    /// empty lists remove it. Complex coefficients act on harmonics above 0; the mean has the real part, and time
-    /// integration refuses them. [`Self::linear_modes`] leave the influence out.
-    ///
-    /// # Errors
-    /// `Unsupported` for a plain structure; `Index`, `Argument`, `Dimension` or `NotFinite`, naming the entry.
-    pub fn set_aero(
-        &mut self,
-        dofs: &[usize],
-        coefficients: &[Complex64],
-        offsets: &[i64],
-        form: AeroForm,
-    ) -> Result<()> {
-        let given = AeroInfluence::new(self.structure().wheel(), dofs, offsets, coefficients)?;
-        self.changed_structure().aero_mut()[form as usize] = given.map(Arc::new);
-        Ok(())
-    }
+/// Sets forces on a sector that follow the motion of its neighbours.
+pub(crate) fn set_aero(
+    model: &mut Model,
+    dofs: &[usize],
+    coefficients: &[Complex64],
+    offsets: &[i64],
+    form: AeroForm,
+) -> Result<()> {
+    let given = AeroInfluence::new(wheel(model.structure()), dofs, offsets, coefficients)?;
+    model.changed_structure().aero_mut()[form as usize] = given.map(Arc::new);
+    Ok(())
+}
 
-    /// The aerodynamic influence of a form; `None` if the model has none.
-    #[must_use]
-    pub fn aero(&self, form: AeroForm) -> Option<&AeroInfluence> {
-        self.structure().aero()[form as usize].as_deref()
-    }
-
-    pub(crate) fn save_aero(&self, out: &mut ByteWriter<'_>) {
-        for influence in self.structure().aero() {
-            out.bool(influence.is_some());
-            if let Some(influence) = influence {
-                influence.save_to(out);
-            }
+/// .
+pub(crate) fn save_aero(model: &Model, out: &mut ByteWriter<'_>) {
+    for influence in model.structure().aero() {
+        out.bool(influence.is_some());
+        if let Some(influence) = influence {
+            influence.save_to(out);
         }
-    }
-
-    pub(crate) fn load_aero(&mut self, input: &mut ByteReader<'_>) -> Result<()> {
-        for form in 0..FORMS {
-            if input.bool()? {
-                let loaded = AeroInfluence::load_from(self.structure().wheel(), input)?;
-                self.structure_mut().aero_mut()[form] = loaded.map(Arc::new);
-            }
-        }
-        Ok(())
     }
 }
 
-impl Structure {
-    /// Map of the degrees of freedom, and number of sectors.
-    fn wheel(&self) -> (&DegreeMap, usize) {
-        (self.degrees(), self.sectors())
-    }
-
-    /// Whether aerodynamic forces act.
-    pub fn has_aero(&self) -> bool {
-        self.aero().iter().any(Option::is_some)
-    }
-
-    /// Whether aerodynamic forces per displacement act.
-    pub fn has_aero_stiffness(&self) -> bool {
-        self.aero()[AeroForm::Displacement as usize].is_some()
-    }
-
-    /// The matrix −A(d) of the influence on the left-hand side, for the residue d of a wave; `None` without influence.
-    pub(crate) fn aero_matrix(&self, form: AeroForm, residue: usize, real: bool) -> Result<Option<Csc>> {
-        let Some(influence) = &self.aero()[form as usize] else {
-            return Ok(None);
-        };
-        let mut entries = Vec::new();
-        influence.visit(self.wheel(), |offset, p, q, c| {
-            try_push(
-                &mut entries,
-                (p, q, -c * self.wave_phase(residue as i64, offset)),
-                CONTEXT,
-            )
-        })?;
-        let mut matrix = Csc::from_triplets(self.ndof(), self.ndof(), entries)?;
-        if real {
-            for v in &mut matrix.values {
-                v.im = 0.0;
-            }
+/// .
+pub(crate) fn load_aero(model: &mut Model, input: &mut ByteReader<'_>) -> Result<()> {
+    for form in 0..FORMS {
+        if input.bool()? {
+            let loaded = AeroInfluence::load_from(wheel(model.structure()), input)?;
+            model.structure_mut().aero_mut()[form] = loaded.map(Arc::new);
         }
-        Ok(Some(matrix))
     }
+    Ok(())
+}
 
-    /// The influence between the sectors of [`Self::repeating_sectors`], on the left-hand side.
-    ///
-    /// # Errors
-    /// `Unsupported` for complex coefficients.
-    pub(crate) fn aero_around(&self, form: AeroForm, interrupt: &Interrupt<'_>) -> Result<Option<Csc>> {
-        let Some(influence) = &self.aero()[form as usize] else {
-            return Ok(None);
-        };
-        if !influence.is_real() {
-            return fail!(
-                Unsupported,
-                "the coefficients of the aerodynamic influence are complex, which means nothing in time: at the angular \
-                 frequency omega, c' + i c'' is c' per displacement and c''/omega per velocity"
-            );
+/// Map of the degrees of freedom, and number of sectors.
+fn wheel(structure: &Structure) -> (&DegreeMap, usize) {
+    (structure.degrees(), structure.sectors())
+}
+
+/// The matrix −A(d) of the influence on the left-hand side, for the residue d of a wave.
+pub(crate) fn aero_matrix(structure: &Structure, form: AeroForm, residue: usize, real: bool) -> Result<Option<Csc>> {
+    let Some(influence) = &structure.aero()[form as usize] else {
+        return Ok(None);
+    };
+    let mut entries = Vec::new();
+    influence.visit(wheel(structure), |offset, p, q, c| {
+        try_push(
+            &mut entries,
+            (p, q, -c * structure.wave_phase(residue as i64, offset)),
+            CONTEXT,
+        )
+    })?;
+    let mut matrix = Csc::from_triplets(structure.ndof(), structure.ndof(), entries)?;
+    if real {
+        for v in &mut matrix.values {
+            v.im = 0.0;
         }
-        let (ndof, sectors) = (self.ndof(), self.repeating_sectors());
-        let mut entries = Vec::new();
-        influence.visit(self.wheel(), |offset, p, q, c| {
-            interrupt.check_before(sectors as u64)?;
-            for s in 0..sectors {
-                let to = (s as i64 + offset).rem_euclid(sectors as i64) as usize;
-                try_push(&mut entries, (s * ndof + p, to * ndof + q, -c), CONTEXT)?;
-            }
-            Ok(())
-        })?;
-        Ok(Some(Csc::from_triplets(ndof * sectors, ndof * sectors, entries)?))
     }
+    Ok(Some(matrix))
+}
+
+/// The influence between the sectors of [`Structure::repeating_sectors`], on the left-hand side.
+pub(crate) fn aero_around(structure: &Structure, form: AeroForm, interrupt: &Interrupt<'_>) -> Result<Option<Csc>> {
+    let Some(influence) = &structure.aero()[form as usize] else {
+        return Ok(None);
+    };
+    if !influence.is_real() {
+        return fail!(
+            Unsupported,
+            "the coefficients of the aerodynamic influence are complex, which means nothing in time: at the angular \
+             frequency omega, c' + i c'' is c' per displacement and c''/omega per velocity"
+        );
+    }
+    let (ndof, sectors) = (structure.ndof(), structure.repeating_sectors());
+    let mut entries = Vec::new();
+    influence.visit(wheel(structure), |offset, p, q, c| {
+        interrupt.check_before(sectors as u64)?;
+        for s in 0..sectors {
+            let to = (s as i64 + offset).rem_euclid(sectors as i64) as usize;
+            try_push(&mut entries, (s * ndof + p, to * ndof + q, -c), CONTEXT)?;
+        }
+        Ok(())
+    })?;
+    Ok(Some(Csc::from_triplets(ndof * sectors, ndof * sectors, entries)?))
 }

@@ -22,127 +22,115 @@ const PROPORTIONAL_LOSS: f64 = 1e-12;
 const HERMITIAN_PART: Complex64 = Complex64::new(0.5, 0.0);
 const LOSS: Complex64 = Complex64::new(0.0, -0.5);
 
-impl Structure {
-    /// Whether the stiffness is complex and symmetric but not Hermitian, so that its part that is not Hermitian
-    /// dissipates. Matrices per nodal diameter show the symmetry in diameters that are their own mirror, and where
-    /// the matrix of −d was given: it is then the transpose, whereas with real sectors without symmetry it is the
-    /// conjugate.
-    pub fn has_complex_stiffness(&self) -> bool {
-        let blocks = &self.blocks[MatrixKind::Stiffness as usize];
-        if self.parts(MatrixKind::Stiffness).all(KeptMatrix::is_real) {
-            return false;
-        }
-        let has = |a: &KeptMatrix, symmetry| a.worst_pair(symmetry).2 <= COMPLEX_STIFFNESS_ROUNDING * a.max_abs();
-        if !blocks.diameters.is_empty() {
-            let given = blocks.diameters.iter().enumerate();
-            let mut lossy = given
-                .filter_map(|(d, a)| a.as_ref().map(|a| (d, a)))
-                .filter(|(_, a)| !has(a, Symmetry::Hermitian))
-                .peekable();
-            let own_mirror = |d: usize| (2 * d).is_multiple_of(self.sectors());
-            let is_transposed = |d: usize, a: &KeptMatrix| {
-                let other = blocks.diameters.get((self.sectors() - d) % self.sectors());
-                other.and_then(Option::as_ref).is_none_or(|b| are_transposed(a, b))
-            };
-            return lossy.peek().is_some()
-                && lossy
-                    .all(|(d, a)| !a.is_real() && (!own_mirror(d) || has(a, Symmetry::Plain)) && is_transposed(d, a));
-        }
-        let coupled = |symmetry: Symmetry| match (&blocks.next, &blocks.previous) {
-            (Some(next), Some(previous)) => {
-                let limit = COMPLEX_STIFFNESS_ROUNDING * next.max_abs().max(previous.max_abs());
-                let near = |a: &KeptMatrix, b: &KeptMatrix| {
-                    let entries = (0..a.order()).flat_map(|j| a.column(j).map(move |(i, v)| (i, j, v)));
-                    entries
-                        .into_iter()
-                        .all(|(i, j, v)| (v - symmetry.mirror(b.get(j, i))).norm() <= limit)
-                };
-                near(next, previous) && near(previous, next)
-            }
-            // The coupling to the previous sector is the transpose.
-            (Some(next), None) => symmetry == Symmetry::Plain || next.is_real(),
-            (None, previous) => previous.is_none(),
+/// Whether the stiffness is complex and symmetric but not Hermitian, so that its part that is not Hermitian
+/// dissipates.
+pub(crate) fn has_complex_stiffness(structure: &Structure) -> bool {
+    let blocks = &structure.blocks[MatrixKind::Stiffness as usize];
+    if structure.parts(MatrixKind::Stiffness).all(KeptMatrix::is_real) {
+        return false;
+    }
+    let has = |a: &KeptMatrix, symmetry| a.worst_pair(symmetry).2 <= COMPLEX_STIFFNESS_ROUNDING * a.max_abs();
+    if !blocks.diameters.is_empty() {
+        let given = blocks.diameters.iter().enumerate();
+        let mut lossy = given
+            .filter_map(|(d, a)| a.as_ref().map(|a| (d, a)))
+            .filter(|(_, a)| !has(a, Symmetry::Hermitian))
+            .peekable();
+        let own_mirror = |d: usize| (2 * d).is_multiple_of(structure.sectors());
+        let is_transposed = |d: usize, a: &KeptMatrix| {
+            let other = blocks.diameters.get((structure.sectors() - d) % structure.sectors());
+            other.and_then(Option::as_ref).is_none_or(|b| are_transposed(a, b))
         };
-        let ring = |symmetry| blocks.own.as_ref().is_none_or(|own| has(own, symmetry)) && coupled(symmetry);
-        ring(Symmetry::Plain) && !ring(Symmetry::Hermitian)
+        return lossy.peek().is_some()
+            && lossy.all(|(d, a)| !a.is_real() && (!own_mirror(d) || has(a, Symmetry::Plain)) && is_transposed(d, a));
     }
-
-    /// Loss factor of the whole stiffness: the given one, plus η of a complex stiffness H(1 + iη) with Hermitian H.
-    /// `None` where a complex stiffness dissipates in another form.
-    pub fn whole_loss_factor(&self) -> Result<Option<f64>> {
-        if !self.has_complex_stiffness() {
-            return Ok(Some(self.loss_factor()));
+    let coupled = |symmetry: Symmetry| match (&blocks.next, &blocks.previous) {
+        (Some(next), Some(previous)) => {
+            let limit = COMPLEX_STIFFNESS_ROUNDING * next.max_abs().max(previous.max_abs());
+            let near = |a: &KeptMatrix, b: &KeptMatrix| {
+                let entries = (0..a.order()).flat_map(|j| a.column(j).map(move |(i, v)| (i, j, v)));
+                entries
+                    .into_iter()
+                    .all(|(i, j, v)| (v - symmetry.mirror(b.get(j, i))).norm() <= limit)
+            };
+            near(next, previous) && near(previous, next)
         }
-        let blocks = &self.blocks[MatrixKind::Stiffness as usize];
-        let (elastic, loss) = (of_blocks(blocks, HERMITIAN_PART)?, of_blocks(blocks, LOSS)?);
-        let pairs = || elastic.parts().zip(loss.parts());
-        let (mut product, mut square, mut largest) = (0.0, 0.0, 0.0_f64);
-        for (h, l) in pairs() {
-            largest = largest.max(l.max_abs());
-            for j in 0..h.order() {
-                for (i, v) in h.column(j) {
-                    product += (v.conj() * l.get(i, j)).re;
-                    square += v.norm_sqr();
-                }
-            }
-        }
-        if square == 0.0 {
-            return Ok(None);
-        }
-        let eta = product / square;
-        let limit = PROPORTIONAL_LOSS * largest;
-        let is_share = pairs().all(|(h, l)| {
-            (0..h.order()).all(|j| {
-                h.column(j).all(|(i, v)| (l.get(i, j) - eta * v).norm() <= limit)
-                    && l.column(j).all(|(i, v)| (v - eta * h.get(i, j)).norm() <= limit)
-            })
-        });
-        Ok(is_share.then_some(self.loss_factor() + eta))
-    }
-
-    /// The stiffness of a wave without the loss that a complex stiffness contains.
-    pub(crate) fn elastic(&self, stiffness: Csc) -> Result<Csc> {
-        if stiffness.is_real() || !self.has_complex_stiffness() {
-            return Ok(stiffness);
-        }
-        combined(&stiffness, &stiffness, HERMITIAN_PART)
-    }
-
-    /// Replaces a complex symmetric stiffness by its Hermitian part and adds the rest to the structural matrix.
-    fn separate_complex_stiffness(&mut self) -> Result<()> {
-        let stiffness = self.blocks[MatrixKind::Stiffness as usize].try_clone()?;
-        let structural = self.blocks[MatrixKind::Structural as usize].try_clone()?;
-        let is_given = self.parts(MatrixKind::Structural).next().is_some();
-        if is_given && stiffness.diameters.is_empty() != structural.diameters.is_empty() {
-            return fail!(
-                Unsupported,
-                "modes need a complex symmetric stiffness and the structural damping in one form, both as blocks of sectors or both \
-                 per nodal diameter; give all of the loss as structural damping"
-            );
-        }
-        *self.blocks_mut(MatrixKind::Stiffness)? = of_blocks(&stiffness, HERMITIAN_PART)?;
-        let loss = of_blocks(&stiffness, LOSS)?;
-        *self.blocks_mut(MatrixKind::Structural)? = added(self.ndof(), &loss, &structural)?;
-        self.loss_of_stiffness = true;
-        Ok(())
-    }
+        // The coupling to the previous sector is the transpose.
+        (Some(next), None) => symmetry == Symmetry::Plain || next.is_real(),
+        (None, previous) => previous.is_none(),
+    };
+    let ring = |symmetry| blocks.own.as_ref().is_none_or(|own| has(own, symmetry)) && coupled(symmetry);
+    ring(Symmetry::Plain) && !ring(Symmetry::Hermitian)
 }
 
-impl Model {
-    /// The model whose stiffness has natural modes: a complex symmetric stiffness as its Hermitian part and structural
-    /// damping. Its equations are the same.
-    ///
-    /// # Errors
-    /// `Unsupported` where the structural matrix has another form; `OutOfMemory`.
-    #[doc(hidden)]
-    pub fn with_separate_loss(&self) -> Result<Cow<'_, Self>> {
-        if !self.structure().has_complex_stiffness() {
-            return Ok(Cow::Borrowed(self));
-        }
-        let mut model = self.try_clone()?;
-        model.structure_mut().separate_complex_stiffness()?;
-        Ok(Cow::Owned(model))
+/// Loss factor of the whole stiffness.
+pub(crate) fn whole_loss_factor(structure: &Structure) -> Result<Option<f64>> {
+    if !structure.has_complex_stiffness() {
+        return Ok(Some(structure.loss_factor()));
     }
+    let blocks = &structure.blocks[MatrixKind::Stiffness as usize];
+    let (elastic, loss) = (of_blocks(blocks, HERMITIAN_PART)?, of_blocks(blocks, LOSS)?);
+    let pairs = || elastic.parts().zip(loss.parts());
+    let (mut product, mut square, mut largest) = (0.0, 0.0, 0.0_f64);
+    for (h, l) in pairs() {
+        largest = largest.max(l.max_abs());
+        for j in 0..h.order() {
+            for (i, v) in h.column(j) {
+                product += (v.conj() * l.get(i, j)).re;
+                square += v.norm_sqr();
+            }
+        }
+    }
+    if square == 0.0 {
+        return Ok(None);
+    }
+    let eta = product / square;
+    let limit = PROPORTIONAL_LOSS * largest;
+    let is_share = pairs().all(|(h, l)| {
+        (0..h.order()).all(|j| {
+            h.column(j).all(|(i, v)| (l.get(i, j) - eta * v).norm() <= limit)
+                && l.column(j).all(|(i, v)| (v - eta * h.get(i, j)).norm() <= limit)
+        })
+    });
+    Ok(is_share.then_some(structure.loss_factor() + eta))
+}
+
+/// The stiffness of a wave without the loss that a complex stiffness contains.
+pub(crate) fn elastic(structure: &Structure, stiffness: Csc) -> Result<Csc> {
+    if stiffness.is_real() || !structure.has_complex_stiffness() {
+        return Ok(stiffness);
+    }
+    combined(&stiffness, &stiffness, HERMITIAN_PART)
+}
+
+/// Replaces a complex symmetric stiffness by its Hermitian part and adds the rest to the structural matrix.
+fn separate_complex_stiffness(structure: &mut Structure) -> Result<()> {
+    let stiffness = structure.blocks[MatrixKind::Stiffness as usize].try_clone()?;
+    let structural = structure.blocks[MatrixKind::Structural as usize].try_clone()?;
+    let is_given = structure.parts(MatrixKind::Structural).next().is_some();
+    if is_given && stiffness.diameters.is_empty() != structural.diameters.is_empty() {
+        return fail!(
+            Unsupported,
+            "modes need a complex symmetric stiffness and the structural damping in one form, both as blocks of sectors or both \
+             per nodal diameter; give all of the loss as structural damping"
+        );
+    }
+    *structure.blocks_mut(MatrixKind::Stiffness)? = of_blocks(&stiffness, HERMITIAN_PART)?;
+    let loss = of_blocks(&stiffness, LOSS)?;
+    *structure.blocks_mut(MatrixKind::Structural)? = added(structure.ndof(), &loss, &structural)?;
+    structure.loss_of_stiffness = true;
+    Ok(())
+}
+
+/// The model whose stiffness has natural modes.
+#[doc(hidden)]
+pub(crate) fn with_separate_loss(model: &Model) -> Result<Cow<'_, Model>> {
+    if !model.structure().has_complex_stiffness() {
+        return Ok(Cow::Borrowed(model));
+    }
+    let mut model = model.try_clone()?;
+    separate_complex_stiffness(model.structure_mut())?;
+    Ok(Cow::Owned(model))
 }
 
 /// Splits all blocks of a matrix. The split block to the previous sector is the mirror of the one to the next sector.

@@ -18,5 +18,6 @@ pub mod speed;
 pub mod spring;
 pub mod spring_stiffness;
 pub mod structure;
+mod structure_methods;
 pub mod wave;
 pub mod wave_matrix;

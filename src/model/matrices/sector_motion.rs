@@ -125,149 +125,140 @@ struct Sides<'a> {
     node_b: Option<[Option<usize>; 3]>,
 }
 
-impl Structure {
-    /// Relative motion in the k-th direction of a contact.
-    pub fn contact_motion(&self, contact: &Contact, k: usize) -> SectorMotion {
-        let direction = contact.direction(k);
-        self.written(&Sides::of_contact(contact, &direction))
-            .unwrap_or_default()
-    }
+/// Relative motion in the k-th direction of a contact.
+pub(crate) fn contact_motion(structure: &Structure, contact: &Contact, k: usize) -> SectorMotion {
+    let direction = contact.direction(k);
+    written(structure, &Sides::of_contact(contact, &direction)).unwrap_or_default()
+}
 
-    /// Relative motion of a spring.
-    pub fn spring_motion(&self, spring: &Spring) -> SectorMotion {
-        let direction = Direction::between(spring.dof_a, spring.dof_b);
-        let sides = Sides {
-            direction: &direction,
-            sector_offset: spring.sector_offset,
-            node_b: None,
+/// Relative motion of a spring.
+pub(crate) fn spring_motion(structure: &Structure, spring: &Spring) -> SectorMotion {
+    let direction = Direction::between(spring.dof_a, spring.dof_b);
+    let sides = Sides {
+        direction: &direction,
+        sector_offset: spring.sector_offset,
+        node_b: None,
+    };
+    written(structure, &sides).unwrap_or_default()
+}
+
+/// Row of a relative motion in a wave.
+pub(crate) fn row(structure: &Structure, motion: &SectorMotion, wave: Wave) -> Row {
+    motion.row(|sector| match wave {
+        Wave::Harmonic(h) => structure.phase(h, sector),
+        Wave::Diameter(d) => structure.wave_phase(d, sector),
+    })
+}
+
+/// A key that distinguishes different relative motions, and orders them.
+pub(crate) fn key(structure: &Structure, motion: &SectorMotion) -> Key {
+    let sectors = structure.sectors() as i64;
+    motion
+        .terms
+        .map(|term| term.map(|t| (t.dof, t.sector.rem_euclid(sectors), t.coefficient.to_bits())))
+}
+
+/// Refuses relative motions that have no meaning with these faces or fixed degrees of freedom.
+pub(crate) fn check_motion(
+    structure: &Structure,
+    what: &str,
+    direction: &Direction,
+    sector_offset: i64,
+    node_b: Option<[Option<usize>; 3]>,
+) -> Result<()> {
+    if structure.degrees().is_identity() {
+        return Ok(());
+    }
+    let dofs = |side: &Side| side.iter().flatten().map(|&(dof, _)| dof).next();
+    if let (Some(faces), Some(a), Some(b)) = (structure.degrees().faces(), dofs(&direction.a), dofs(&direction.b))
+        && let Some(pair) = faces.is_own_image(a, b)
+    {
+        return fail!(
+            Argument,
+            "{what}: dof_a = {a} and dof_b = {b} are the left and the right node of pair {pair}, a node and its own image; between neighbouring sectors name the left one on both sides, with sector_offset = 1"
+        );
+    }
+    let sides = Sides {
+        direction,
+        sector_offset,
+        node_b,
+    };
+    match written(structure, &sides) {
+        Ok(motion) if motion.is_still(0) && motion.is_still(1) => {
+            fail!(Argument, "{what}: both sides are fixed; it needs a side that moves")
+        }
+        Ok(motion) if motion.cancels(structure.sectors()) => fail!(
+            Argument,
+            "{what}: dof_a and dof_b are both the same degree of freedom; it needs two different sides"
+        ),
+        Ok(_) => Ok(()),
+        Err(Unknown::Node(dof)) => fail!(
+            Argument,
+            "{what}: dof_b = {dof} lies in a sector whose axes are turned by {} degrees, and the other components of its node are unknown; give a normal with x, y and z of both nodes, or use a cylindrical frame",
+            structure.degrees().faces().map_or(0.0, Faces::angle) * sector_offset as f64
+        ),
+        Err(Unknown::ManyNodes) => fail!(
+            Argument,
+            "{what}: one side names several nodes of the right face; needs the components of one node"
+        ),
+    }
+}
+
+/// Expresses a relative motion over the independent degrees of freedom.
+fn written(structure: &Structure, sides: &Sides<'_>) -> core::result::Result<SectorMotion, Unknown> {
+    let mut motion = SectorMotion::default();
+    let offset = sides.sector_offset.rem_euclid(structure.sectors() as i64);
+    let turn = structure.degrees().faces().and_then(|faces| faces.turn_of(offset));
+    for (dof, c) in sides.direction.a.iter().flatten() {
+        add_image(structure, &mut motion, (0, 0), *dof, *c)?;
+    }
+    for (at, (dof, c)) in sides
+        .direction
+        .b
+        .iter()
+        .enumerate()
+        .filter_map(|(k, t)| t.map(|t| (k, t)))
+    {
+        let side = (1, offset);
+        let (Some(turn), Some(faces)) = (turn, structure.degrees().faces()) else {
+            add_image(structure, &mut motion, side, dof, -c)?;
+            continue;
         };
-        self.written(&sides).unwrap_or_default()
-    }
-
-    /// Row of a relative motion in a wave.
-    pub fn row(&self, motion: &SectorMotion, wave: Wave) -> Row {
-        motion.row(|sector| match wave {
-            Wave::Harmonic(h) => self.phase(h, sector),
-            Wave::Diameter(d) => self.wave_phase(d, sector),
-        })
-    }
-
-    /// Row of the k-th relative motion of a contact in a harmonic.
-    pub fn contact_row(&self, contact: &Contact, k: usize, harmonic: usize) -> Row {
-        self.row(&self.contact_motion(contact, k), Wave::Harmonic(harmonic))
-    }
-
-    /// A key that distinguishes different relative motions, and orders them.
-    #[must_use]
-    pub fn key(&self, motion: &SectorMotion) -> Key {
-        let sectors = self.sectors() as i64;
-        motion
-            .terms
-            .map(|term| term.map(|t| (t.dof, t.sector.rem_euclid(sectors), t.coefficient.to_bits())))
-    }
-
-    /// Refuses relative motions that have no meaning with these faces or fixed degrees of freedom.
-    pub(crate) fn check_motion(
-        &self,
-        what: &str,
-        direction: &Direction,
-        sector_offset: i64,
-        node_b: Option<[Option<usize>; 3]>,
-    ) -> Result<()> {
-        if self.degrees().is_identity() {
-            return Ok(());
+        let given = sides.node_b.map(|node| (node, at));
+        let (node, k) = faces
+            .vector_of(dof, structure.degrees().given(), given)
+            .ok_or(Unknown::Node(dof))?;
+        for (dof, turned) in node.iter().zip(turn[k]) {
+            if let (Some(dof), true) = (*dof, turned != 0.0) {
+                add_image(structure, &mut motion, side, dof, -c * turned)?;
+            }
         }
-        let dofs = |side: &Side| side.iter().flatten().map(|&(dof, _)| dof).next();
-        if let (Some(faces), Some(a), Some(b)) = (self.degrees().faces(), dofs(&direction.a), dofs(&direction.b))
-            && let Some(pair) = faces.is_own_image(a, b)
-        {
-            return fail!(
-                Argument,
-                "{what}: dof_a = {a} and dof_b = {b} are the left and the right node of pair {pair}, a node and its own image; between neighbouring sectors name the left one on both sides, with sector_offset = 1"
-            );
-        }
-        let sides = Sides {
-            direction,
-            sector_offset,
-            node_b,
+    }
+    if !structure.degrees().is_identity() {
+        motion.clean();
+    }
+    Ok(motion)
+}
+
+fn add_image(
+    structure: &Structure,
+    motion: &mut SectorMotion,
+    (side, offset): (usize, i64),
+    dof: usize,
+    factor: f64,
+) -> core::result::Result<(), Unknown> {
+    let (sector, terms) = structure.degrees().image(dof);
+    for (dof, c) in terms {
+        let term = Term {
+            dof,
+            sector: offset + sector,
+            coefficient: factor * c,
         };
-        match self.written(&sides) {
-            Ok(motion) if motion.is_still(0) && motion.is_still(1) => {
-                fail!(Argument, "{what}: both sides are fixed; it needs a side that moves")
-            }
-            Ok(motion) if motion.cancels(self.sectors()) => fail!(
-                Argument,
-                "{what}: dof_a and dof_b are both the same degree of freedom; it needs two different sides"
-            ),
-            Ok(_) => Ok(()),
-            Err(Unknown::Node(dof)) => fail!(
-                Argument,
-                "{what}: dof_b = {dof} lies in a sector whose axes are turned by {} degrees, and the other components of its node are unknown; give a normal with x, y and z of both nodes, or use a cylindrical frame",
-                self.degrees().faces().map_or(0.0, Faces::angle) * sector_offset as f64
-            ),
-            Err(Unknown::ManyNodes) => fail!(
-                Argument,
-                "{what}: one side names several nodes of the right face; needs the components of one node"
-            ),
+        if !motion.add(side, term, structure.sectors()) {
+            return Err(Unknown::ManyNodes);
         }
     }
-
-    /// Expresses a relative motion over the independent degrees of freedom.
-    fn written(&self, sides: &Sides<'_>) -> core::result::Result<SectorMotion, Unknown> {
-        let mut motion = SectorMotion::default();
-        let offset = sides.sector_offset.rem_euclid(self.sectors() as i64);
-        let turn = self.degrees().faces().and_then(|faces| faces.turn_of(offset));
-        for (dof, c) in sides.direction.a.iter().flatten() {
-            self.add_image(&mut motion, (0, 0), *dof, *c)?;
-        }
-        for (at, (dof, c)) in sides
-            .direction
-            .b
-            .iter()
-            .enumerate()
-            .filter_map(|(k, t)| t.map(|t| (k, t)))
-        {
-            let side = (1, offset);
-            let (Some(turn), Some(faces)) = (turn, self.degrees().faces()) else {
-                self.add_image(&mut motion, side, dof, -c)?;
-                continue;
-            };
-            let given = sides.node_b.map(|node| (node, at));
-            let (node, k) = faces
-                .vector_of(dof, self.degrees().given(), given)
-                .ok_or(Unknown::Node(dof))?;
-            for (dof, turned) in node.iter().zip(turn[k]) {
-                if let (Some(dof), true) = (*dof, turned != 0.0) {
-                    self.add_image(&mut motion, side, dof, -c * turned)?;
-                }
-            }
-        }
-        if !self.degrees().is_identity() {
-            motion.clean();
-        }
-        Ok(motion)
-    }
-
-    fn add_image(
-        &self,
-        motion: &mut SectorMotion,
-        (side, offset): (usize, i64),
-        dof: usize,
-        factor: f64,
-    ) -> core::result::Result<(), Unknown> {
-        let (sector, terms) = self.degrees().image(dof);
-        for (dof, c) in terms {
-            let term = Term {
-                dof,
-                sector: offset + sector,
-                coefficient: factor * c,
-            };
-            if !motion.add(side, term, self.sectors()) {
-                return Err(Unknown::ManyNodes);
-            }
-        }
-        Ok(())
-    }
+    Ok(())
 }
 
 impl<'a> Sides<'a> {

@@ -71,30 +71,29 @@ impl Columns for WaveMatrix<'_> {
     }
 }
 
-impl Structure {
-    /// Matrix of one kind for a harmonic, or its complex conjugate, without a copy where possible; see
-    /// [`Self::wave_matrix`].
-    ///
-    /// # Errors
-    /// As [`Self::wave_matrix`].
-    pub fn matrix_of_wave(&self, which: MatrixKind, harmonic: usize, conjugated: bool) -> Result<WaveMatrix<'_>> {
-        let blocks = &self.blocks[which as usize];
-        let alone = blocks.next.is_none() && blocks.previous.is_none() && blocks.diameters.is_empty();
-        // Other matrices have terms besides the one that was given.
-        let as_given = matches!(which, MatrixKind::Mass | MatrixKind::Stiffness);
-        if let Some(own) = &blocks.own
-            && alone
-            && as_given
-            && own.is_real()
-        {
-            return Ok(WaveMatrix::Kept(own));
-        }
-        let mut made = self.wave_matrix(which, harmonic)?;
-        if conjugated {
-            for v in &mut made.values {
-                *v = v.conj();
-            }
-        }
-        Ok(WaveMatrix::Made(made))
+/// Matrix of one kind for a harmonic, or its complex conjugate, without a copy where possible.
+pub(crate) fn matrix_of_wave(
+    structure: &Structure,
+    which: MatrixKind,
+    harmonic: usize,
+    conjugated: bool,
+) -> Result<WaveMatrix<'_>> {
+    let blocks = &structure.blocks[which as usize];
+    let alone = blocks.next.is_none() && blocks.previous.is_none() && blocks.diameters.is_empty();
+    // Other matrices have terms besides the one that was given.
+    let as_given = matches!(which, MatrixKind::Mass | MatrixKind::Stiffness);
+    if let Some(own) = &blocks.own
+        && alone
+        && as_given
+        && own.is_real()
+    {
+        return Ok(WaveMatrix::Kept(own));
     }
+    let mut made = structure.wave_matrix(which, harmonic)?;
+    if conjugated {
+        for v in &mut made.values {
+            *v = v.conj();
+        }
+    }
+    Ok(WaveMatrix::Made(made))
 }

@@ -65,97 +65,77 @@ fn no_artificial_damping<T>() -> Result<T> {
     )
 }
 
-impl Model {
-    /// The mode of the damped structure with stuck contacts that continues `start`, a mode of
-    /// [`Self::select_mode`]. Without damping it is `start`, and D is exactly 0.
-    ///
-    /// A mixture of modes of equal frequency is kept if it is also a mode of the damped structure.
-    ///
-    /// # Errors
-    /// `NoConvergence` where the damping is so strong that no mode is reached; `Singular` where
-    /// artificial damping of the stiffness type does not act on the mode; `Dimension` for a shape
-    /// of another length; `OutOfMemory`.
-    #[doc(hidden)]
-    pub fn damped_mode(&self, start: &SelectedMode, form: DampingForm) -> Result<DampedMode> {
-        self.damped_mode_with(start, ContactState::Stuck, form, &Interrupt::none())
+/// Continues a mode as [`Model::damped_mode`], with contacts stuck or linearised about a static state, and the caller
+/// may stop it.
+#[doc(hidden)]
+pub(crate) fn damped_mode_with(
+    model: &Model,
+    start: &SelectedMode,
+    contacts: ContactState<'_>,
+    form: DampingForm,
+    interrupt: &Interrupt<'_>,
+) -> Result<DampedMode> {
+    interrupt.check()?;
+    if let Cow::Owned(separate) = model.with_separate_loss()? {
+        return separate.damped_mode_with(start, contacts, form, interrupt);
     }
-
-    /// Continues a mode as [`Self::damped_mode`], with contacts stuck or linearised about a static state, and the
-    /// caller may stop it.
-    ///
-    /// # Errors
-    /// As [`Self::damped_mode`]; `StoppedByCaller`.
-    #[doc(hidden)]
-    pub fn damped_mode_with(
-        &self,
-        start: &SelectedMode,
-        contacts: ContactState<'_>,
-        form: DampingForm,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<DampedMode> {
-        interrupt.check()?;
-        if let Cow::Owned(separate) = self.with_separate_loss()? {
-            return separate.damped_mode_with(start, contacts, form, interrupt);
+    let n = model.structure().ndof();
+    if start.shape.len() != n {
+        return fail!(
+            Dimension,
+            "the start mode has {} entries, needs ndof = {n}",
+            start.shape.len()
+        );
+    }
+    let structure = model.structure();
+    let stuck = model.stiffness_at_small_motion(Wave::Harmonic(1), contacts)?;
+    let structural = structure.wave_matrix(MatrixKind::Structural, 1)?;
+    let problem = Damped {
+        form,
+        stiffness: Csc::sum(
+            n,
+            &[
+                (Complex64::ONE, &stuck, Form::Plain),
+                (Complex64::I, &structural, Form::Plain),
+            ],
+        )?,
+        own: structure.wave_matrix(MatrixKind::Stiffness, 1)?,
+        damping: structure.wave_matrix(MatrixKind::Damping, 1)?,
+        mass: structure.wave_matrix(MatrixKind::Mass, 1)?,
+        tied: structure.tied_to_frequency(Wave::Harmonic(1))?,
+    };
+    let undamped = DampedMode {
+        omega: start.omega,
+        damping: 0.0,
+        shape: try_copy(&start.shape, CONTEXT)?,
+    };
+    // The undamped mode is one without aerodynamic forces.
+    let conservative = !structure.has_aero_stiffness()
+        && problem.stiffness.worst_hermitian_pair().2 <= 1e-10 * problem.stiffness.max_abs();
+    if conservative && problem.damping.max_abs() == 0.0 {
+        // Linear damping does not need the artificial damping here, but friction will.
+        let strain = quadratic(&problem.own, &undamped.shape);
+        if form == DampingForm::Stiffness && strain.abs() <= DAMPED_MODE_NO_STRAIN * undamped.omega * undamped.omega {
+            return no_artificial_damping();
         }
-        let n = self.structure().ndof();
-        if start.shape.len() != n {
-            return fail!(
-                Dimension,
-                "the start mode has {} entries, needs ndof = {n}",
-                start.shape.len()
-            );
-        }
-        let structure = self.structure();
-        let stuck = self.stiffness_at_small_motion(Wave::Harmonic(1), contacts)?;
-        let structural = structure.wave_matrix(MatrixKind::Structural, 1)?;
-        let problem = Damped {
-            form,
-            stiffness: Csc::sum(
-                n,
-                &[
-                    (Complex64::ONE, &stuck, Form::Plain),
-                    (Complex64::I, &structural, Form::Plain),
-                ],
-            )?,
-            own: structure.wave_matrix(MatrixKind::Stiffness, 1)?,
-            damping: structure.wave_matrix(MatrixKind::Damping, 1)?,
-            mass: structure.wave_matrix(MatrixKind::Mass, 1)?,
-            tied: structure.tied_to_frequency(Wave::Harmonic(1))?,
-        };
-        let undamped = DampedMode {
-            omega: start.omega,
-            damping: 0.0,
-            shape: try_copy(&start.shape, CONTEXT)?,
-        };
-        // The undamped mode is one without aerodynamic forces.
-        let conservative = !structure.has_aero_stiffness()
-            && problem.stiffness.worst_hermitian_pair().2 <= 1e-10 * problem.stiffness.max_abs();
-        if conservative && problem.damping.max_abs() == 0.0 {
-            // Linear damping does not need the artificial damping here, but friction will.
-            let strain = quadratic(&problem.own, &undamped.shape);
-            if form == DampingForm::Stiffness && strain.abs() <= DAMPED_MODE_NO_STRAIN * undamped.omega * undamped.omega
-            {
-                return no_artificial_damping();
-            }
-            return Ok(undamped);
-        }
-        if start.multiplicity > 1 {
-            let mode = problem.follow(&undamped, OFFSET_REPEATED, interrupt)?;
-            if problem.residual(&mode, true)? {
-                return Ok(mode);
-            }
-        }
-        let mode = problem.follow(&undamped, DAMPED_MODE_OFFSET, interrupt)?;
-        if problem.residual(&mode, false)? {
+        return Ok(undamped);
+    }
+    if start.multiplicity > 1 {
+        let mode = problem.follow(&undamped, OFFSET_REPEATED, interrupt)?;
+        if problem.residual(&mode, true)? {
             return Ok(mode);
         }
-        fail!(
-            NoConvergence,
-            "the damped linear mode was not reached from mode {} at omega = {}; is the structure damped beyond vibration?",
-            start.index,
-            start.omega
-        )
     }
+    let mode = problem.follow(&undamped, DAMPED_MODE_OFFSET, interrupt)?;
+    if problem.residual(&mode, false)? {
+        return Ok(mode);
+    }
+    fail!(
+        NoConvergence,
+        "the damped linear mode was not reached from mode {} at omega = {}; is the structure damped beyond vibration?",
+        start.index,
+        start.omega
+    )
 }
 
 /// Matrices of the structure in the fundamental.

@@ -80,195 +80,158 @@ pub(crate) struct Pencil {
     gyroscopic: Option<Csc>,
 }
 
-impl Model {
-    /// The `count` lowest undamped natural modes; see [`Self::linear_modes`]. Large structures are
-    /// treated by shift-invert Lanczos.
-    ///
-    /// # Errors
-    /// As [`Self::linear_modes`]; `Argument` for a count of 0.
-    pub fn lowest_modes(&self, diameter: i64, contacts: ContactState<'_>, count: usize) -> Result<LinearModes> {
-        self.lowest_modes_with(diameter, contacts, count, &Interrupt::none())
+/// Computes modes as [`Model::lowest_modes`], and the caller may stop it.
+pub(crate) fn lowest_modes_with(
+    model: &Model,
+    diameter: i64,
+    contacts: ContactState<'_>,
+    count: usize,
+    interrupt: &Interrupt<'_>,
+) -> Result<LinearModes> {
+    model.check_matrices(true)?;
+    if count == 0 {
+        return fail!(Argument, "count = 0, needs at least 1");
     }
+    interrupt.phase(Phase::Setup, 0.0)?;
+    let (of, is_mirrored) = computed_sense(model, diameter)?;
+    let pencil = model.pencil(Wave::Diameter(of), contacts)?;
+    interrupt.phase(Phase::Modes, 0.0)?;
+    expanded(model, pencil.lowest(count, interrupt)?.turned(is_mirrored), diameter)
+}
 
-    /// Computes modes as [`Self::lowest_modes`], and the caller may stop it.
-    ///
-    /// # Errors
-    /// As [`Self::lowest_modes`]; `StoppedByCaller`.
-    pub fn lowest_modes_with(
-        &self,
-        diameter: i64,
-        contacts: ContactState<'_>,
-        count: usize,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<LinearModes> {
-        self.check_matrices(true)?;
-        if count == 0 {
-            return fail!(Argument, "count = 0, needs at least 1");
-        }
-        interrupt.phase(Phase::Setup, 0.0)?;
-        let (of, is_mirrored) = self.computed_sense(diameter)?;
-        let pencil = self.pencil(Wave::Diameter(of), contacts)?;
-        interrupt.phase(Phase::Modes, 0.0)?;
-        self.expanded(pencil.lowest(count, interrupt)?.turned(is_mirrored), diameter)
+/// All undamped natural modes of the signed nodal diameter `diameter`, modulo N (0 for a plain structure).
+pub(crate) fn linear_modes(model: &Model, diameter: i64, contacts: ContactState<'_>) -> Result<LinearModes> {
+    model.check_matrices(true)?;
+    let (of, is_mirrored) = computed_sense(model, diameter)?;
+    let modes = model.pencil(Wave::Diameter(of), contacts)?.all(&Interrupt::none())?;
+    expanded(model, modes.turned(is_mirrored), diameter)
+}
+
+/// The nodal diameter whose modes are computed, and whether their conjugates are requested: both senses have the same
+/// modes where nothing distinguishes them.
+fn computed_sense(model: &Model, diameter: i64) -> Result<(i64, bool)> {
+    let structure = model.structure();
+    structure.check_diameter(diameter)?;
+    let signed = structure.signed_diameter(diameter);
+    if signed < 0 && model.has_equal_senses() {
+        return Ok((-signed, true));
     }
+    Ok((signed, false))
+}
 
-    /// All undamped natural modes of the signed nodal diameter `diameter`, modulo N (0 for a plain structure): the
-    /// wave in which sector s + 1 lags by 2π·diameter/N. With gyroscopic forces or complex blocks the wave of
-    /// −`diameter` has other modes; otherwise it has the same frequencies and the conjugate shapes. Motion without
-    /// mass has no mode, so that a singular mass matrix gives fewer modes than degrees of freedom. Dense algebra is
-    /// meant for up to a few hundred degrees of freedom; [`Self::lowest_modes`] serves larger structures.
-    ///
-    /// # Errors
-    /// `Argument` for a diameter of a plain structure, `NotHermitian` when K or M is not, and those of
-    /// [`eigen::generalised`].
-    pub fn linear_modes(&self, diameter: i64, contacts: ContactState<'_>) -> Result<LinearModes> {
-        self.check_matrices(true)?;
-        let (of, is_mirrored) = self.computed_sense(diameter)?;
-        let modes = self.pencil(Wave::Diameter(of), contacts)?.all(&Interrupt::none())?;
-        self.expanded(modes.turned(is_mirrored), diameter)
-    }
-
-    /// Whether the undamped waves of −d have the frequencies of those of d, and the conjugate shapes.
-    #[must_use]
-    pub fn has_equal_senses(&self) -> bool {
-        self.structure().has_conjugate_waves() && !self.structure().is_gyroscopic()
-    }
-
-    /// The nodal diameter whose modes are computed, and whether their conjugates are requested: both senses have the same
-    /// modes where nothing distinguishes them.
-    fn computed_sense(&self, diameter: i64) -> Result<(i64, bool)> {
-        let structure = self.structure();
-        structure.check_diameter(diameter)?;
-        let signed = structure.signed_diameter(diameter);
-        if signed < 0 && self.has_equal_senses() {
-            return Ok((-signed, true));
-        }
-        Ok((signed, false))
-    }
-
-    /// Natural frequencies of harmonic `h`, ascending, 0 for motions that grow; `None` where they cannot be computed,
-    /// as where K or M is not Hermitian.
-    pub(crate) fn natural_frequencies(
-        &self,
-        h: usize,
-        contacts: ContactState<'_>,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<Option<Vec<f64>>> {
-        let found = self
-            .pencil(Wave::Harmonic(h), contacts)
-            .and_then(|pencil| pencil.all(interrupt));
-        match found {
-            Ok(mut modes) => {
-                for omega in &mut modes.omega {
-                    *omega = omega.max(0.0);
-                }
-                Ok(Some(modes.omega))
+/// Natural frequencies of harmonic `h`, ascending, 0 for motions that grow.
+pub(crate) fn natural_frequencies(
+    model: &Model,
+    h: usize,
+    contacts: ContactState<'_>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<Vec<f64>>> {
+    let found = model
+        .pencil(Wave::Harmonic(h), contacts)
+        .and_then(|pencil| pencil.all(interrupt));
+    match found {
+        Ok(mut modes) => {
+            for omega in &mut modes.omega {
+                *omega = omega.max(0.0);
             }
-            Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => Err(e),
-            Err(_) => Ok(None),
+            Ok(Some(modes.omega))
         }
+        Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => Err(e),
+        Err(_) => Ok(None),
     }
+}
 
-    /// The modes with their shapes on all degrees of freedom of the caller.
-    fn expanded(&self, modes: LinearModes, diameter: i64) -> Result<LinearModes> {
-        let degrees = self.structure().degrees();
-        if degrees.is_identity() {
-            return Ok(modes);
-        }
-        let next = self.structure().wave_phase(diameter, 1);
-        let (n, given) = (degrees.independent(), degrees.given());
-        let mut shapes = try_vec(modes.omega.len().saturating_mul(given), Complex64::ZERO, CONTEXT)?;
-        for (all, shape) in shapes.chunks_exact_mut(given).zip(modes.shapes.chunks_exact(n)) {
-            degrees.expand(next, shape, all);
-        }
-        Ok(LinearModes { shapes, ..modes })
+/// The modes with their shapes on all degrees of freedom of the caller.
+fn expanded(model: &Model, modes: LinearModes, diameter: i64) -> Result<LinearModes> {
+    let degrees = model.structure().degrees();
+    if degrees.is_identity() {
+        return Ok(modes);
     }
+    let next = model.structure().wave_phase(diameter, 1);
+    let (n, given) = (degrees.independent(), degrees.given());
+    let mut shapes = try_vec(modes.omega.len().saturating_mul(given), Complex64::ZERO, CONTEXT)?;
+    for (all, shape) in shapes.chunks_exact_mut(given).zip(modes.shapes.chunks_exact(n)) {
+        degrees.expand(next, shape, all);
+    }
+    Ok(LinearModes { shapes, ..modes })
+}
 
-    /// Number of motions of a nodal diameter that neither structure nor springs resist: modes whose frequency without
-    /// contacts is zero, up to rounding, or that grow. At most six are counted for a large structure. 0 for a
-    /// structure whose stiffness is not Hermitian, where the number is not known.
-    ///
-    /// # Errors
-    /// `OutOfMemory`, and those of the eigensolvers; `StoppedByCaller`.
-    pub fn rigid_modes(&self, diameter: i64, interrupt: &Interrupt<'_>) -> Result<usize> {
-        interrupt.check()?;
-        let pencil = match self.pencil(Wave::Diameter(diameter), ContactState::Free) {
-            Err(e) if e.status == Status::NotHermitian => return Ok(0),
-            pencil => pencil?,
-        };
-        if resists_all_motion(&pencil.stiffness, interrupt)? {
-            return Ok(0);
-        }
-        // The stiffest degree of freedom alone sets the scale.
-        let (k, m) = (&pencil.stiffness, &pencil.mass);
-        let own = |j| (k.get(j, j).re, m.get(j, j).re);
-        let moving = MovingRows::of(k)?;
-        let moves = |j: &usize| moving.as_ref().is_none_or(|moving| moving.contains(*j));
-        let heavy = (0..k.rows).filter(moves).map(own).filter(|&(_, mass)| mass > 0.0);
-        let stiffest = heavy.fold(0.0_f64, |most, (stiffness, mass)| most.max(stiffness / mass));
-        let modes = pencil.lowest(RIGID_MODES, interrupt)?;
-        let small = |omega: &&f64| **omega < 0.0 || **omega * **omega <= RIGID * stiffest;
-        Ok(modes.omega.iter().take_while(small).count())
+/// Number of motions of a nodal diameter that neither structure nor springs resist.
+pub(crate) fn rigid_modes(model: &Model, diameter: i64, interrupt: &Interrupt<'_>) -> Result<usize> {
+    interrupt.check()?;
+    let pencil = match model.pencil(Wave::Diameter(diameter), ContactState::Free) {
+        Err(e) if e.status == Status::NotHermitian => return Ok(0),
+        pencil => pencil?,
+    };
+    if resists_all_motion(&pencil.stiffness, interrupt)? {
+        return Ok(0);
     }
+    // The stiffest degree of freedom alone sets the scale.
+    let (k, m) = (&pencil.stiffness, &pencil.mass);
+    let own = |j| (k.get(j, j).re, m.get(j, j).re);
+    let moving = MovingRows::of(k)?;
+    let moves = |j: &usize| moving.as_ref().is_none_or(|moving| moving.contains(*j));
+    let heavy = (0..k.rows).filter(moves).map(own).filter(|&(_, mass)| mass > 0.0);
+    let stiffest = heavy.fold(0.0_f64, |most, (stiffness, mass)| most.max(stiffness / mass));
+    let modes = pencil.lowest(RIGID_MODES, interrupt)?;
+    let small = |omega: &&f64| **omega < 0.0 || **omega * **omega <= RIGID * stiffest;
+    Ok(modes.omega.iter().take_while(small).count())
+}
 
-    /// K of a wave with the springs, and with the contacts removed or stuck.
-    ///
-    /// # Errors
-    /// As [`Self::sprung_stiffness`].
-    #[doc(hidden)]
-    pub fn stiffness_at_small_motion(&self, wave: Wave, contacts: ContactState<'_>) -> Result<Csc> {
-        let acting = self
-            .contacts()
-            .iter()
-            .enumerate()
-            .filter(|(_, c)| c.role() != Role::Inert);
-        match contacts {
-            ContactState::Free => self.sprung_stiffness(wave, core::iter::empty()),
-            ContactState::Stuck => self.sprung_stiffness(wave, acting.map(|(_, c)| c)),
-            ContactState::AboutStatic(tangents) => {
-                let stiffness = |id: usize, k, l| {
-                    let known = tangents.stiffness(id, k, l);
-                    known.unwrap_or_else(|| self.contacts()[id].stiffness_at_small_motion(k, l))
-                };
-                self.stiffness_with(wave, acting, stiffness)
-            }
+/// K of a wave with the springs, and with the contacts removed or stuck.
+#[doc(hidden)]
+pub(crate) fn stiffness_at_small_motion(model: &Model, wave: Wave, contacts: ContactState<'_>) -> Result<Csc> {
+    let acting = model
+        .contacts()
+        .iter()
+        .enumerate()
+        .filter(|(_, c)| c.role() != Role::Inert);
+    match contacts {
+        ContactState::Free => model.sprung_stiffness(wave, core::iter::empty()),
+        ContactState::Stuck => model.sprung_stiffness(wave, acting.map(|(_, c)| c)),
+        ContactState::AboutStatic(tangents) => {
+            let stiffness = |id: usize, k, l| {
+                let known = tangents.stiffness(id, k, l);
+                known.unwrap_or_else(|| model.contacts()[id].stiffness_at_small_motion(k, l))
+            };
+            model.stiffness_with(wave, acting, stiffness)
         }
     }
+}
 
-    /// K and M of a wave, checked, without aerodynamic forces.
-    pub(crate) fn pencil(&self, wave: Wave, contacts: ContactState<'_>) -> Result<Pencil> {
-        if self.structure().has_aero_stiffness() {
-            let mut in_vacuum = self.try_clone()?;
-            *in_vacuum.structure_mut().aero_mut() = Default::default();
-            return in_vacuum.pencil(wave, contacts);
-        }
-        if let Cow::Owned(separate) = self.with_separate_loss()? {
-            return separate.pencil(wave, contacts);
-        }
-        let structure = self.structure();
-        let mass = structure.of_wave(MatrixKind::Mass, wave)?;
-        let stiffness = self.stiffness_at_small_motion(wave, contacts)?;
-        for (name, a) in [("stiffness", &stiffness), ("mass", &mass)] {
-            let (i, j, gap) = a.worst_hermitian_pair();
-            if gap > 1e-10 * a.max_abs() {
-                return fail!(
-                    NotHermitian,
-                    "natural modes need a Hermitian {name}, or a complex symmetric stiffness with loss, but {name}[{i},{j}] and its mirror \
-                     differ by {gap:.3e}"
-                );
-            }
-        }
-        let (mass, weight) = match structure.tied_to_frequency(wave)? {
-            Some(_) => (structure.inertia(wave)?, Some(mass)),
-            None => (mass, None),
-        };
-        Ok(Pencil {
-            stiffness,
-            mass,
-            weight,
-            gyroscopic: structure.gyroscopic_at_speed(wave)?,
-        })
+/// K and M of a wave, checked, without aerodynamic forces.
+pub(crate) fn pencil(model: &Model, wave: Wave, contacts: ContactState<'_>) -> Result<Pencil> {
+    if model.structure().has_aero_stiffness() {
+        let mut in_vacuum = model.try_clone()?;
+        *in_vacuum.structure_mut().aero_mut() = Default::default();
+        return in_vacuum.pencil(wave, contacts);
     }
+    if let Cow::Owned(separate) = model.with_separate_loss()? {
+        return separate.pencil(wave, contacts);
+    }
+    let structure = model.structure();
+    let mass = structure.of_wave(MatrixKind::Mass, wave)?;
+    let stiffness = model.stiffness_at_small_motion(wave, contacts)?;
+    for (name, a) in [("stiffness", &stiffness), ("mass", &mass)] {
+        let (i, j, gap) = a.worst_hermitian_pair();
+        if gap > 1e-10 * a.max_abs() {
+            return fail!(
+                NotHermitian,
+                "natural modes need a Hermitian {name}, or a complex symmetric stiffness with loss, but {name}[{i},{j}] and its mirror \
+                 differ by {gap:.3e}"
+            );
+        }
+    }
+    let (mass, weight) = match structure.tied_to_frequency(wave)? {
+        Some(_) => (structure.inertia(wave)?, Some(mass)),
+        None => (mass, None),
+    };
+    Ok(Pencil {
+        stiffness,
+        mass,
+        weight,
+        gyroscopic: structure.gyroscopic_at_speed(wave)?,
+    })
 }
 
 impl Pencil {

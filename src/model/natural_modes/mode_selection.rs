@@ -45,68 +45,49 @@ const COMPARED: usize = 40;
 
 const CONTEXT: &str = "the start mode";
 
-impl Model {
-    /// The linear mode of the engine-order wave with stuck contacts that `choice` selects.
-    ///
-    /// Equal frequencies (within 1e-8, relative) do not determine the shape; see [`Multiple`]. [`ModeChoice::Near`]
-    /// and [`ModeChoice::Shape`] treat them as one.
-    ///
-    /// # Errors
-    /// Those of [`ModeChoice::check`]; `Index` for a mode that does not exist; `Argument` for a
-    /// rigid-body or unstable mode, or a shape without mass; `NotHermitian`,
-    /// `NotPositiveDefinite` for the matrices; `NoConvergence`, `Singular`, `OutOfMemory`.
-    #[doc(hidden)]
-    pub fn select_mode(&self, choice: ModeChoice<'_>) -> Result<SelectedMode> {
-        self.select_mode_with(choice, ContactState::Stuck, &Interrupt::none())
-    }
-
-    /// Selects a mode as [`Self::select_mode`], with contacts stuck or linearised about a static state, and the
-    /// caller may stop it.
-    ///
-    /// # Errors
-    /// As [`Self::select_mode`]; `StoppedByCaller`.
-    #[doc(hidden)]
-    pub fn select_mode_with(
-        &self,
-        choice: ModeChoice<'_>,
-        contacts: ContactState<'_>,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<SelectedMode> {
-        interrupt.phase(Phase::Modes, 0.0)?;
-        choice.check(self.ndof())?;
-        let mut restricted;
-        let choice = match choice {
-            ModeChoice::Shape(shape) => {
-                restricted = try_vec(self.structure().ndof(), Complex64::ZERO, CONTEXT)?;
-                self.structure().degrees().restrict(shape, &mut restricted);
-                ModeChoice::Shape(&restricted)
-            }
-            other => other,
-        };
-        let pencil = self.pencil(Wave::Harmonic(1), contacts)?;
-        let (known, chosen) = KnownModes::find(&pencil, choice, interrupt)?;
-        known.check_frequency(chosen.index)?;
-        let n = self.structure().ndof();
-        let shapes = &known.modes.shapes[chosen.cluster.start * n..chosen.cluster.end * n];
-        let (shape, multiple) =
-            repeated_modes::resolve(&pencil, shapes, chosen.index - chosen.cluster.start, chosen.projection)?;
-        let free = self
-            .pencil(Wave::Harmonic(1), ContactState::Free)
-            .and_then(|free| lowest_by_quotient(&free, known.modes.omega.len(), interrupt));
-        Ok(SelectedMode {
-            index: chosen.index,
-            omega: known.modes.omega[chosen.index],
-            shape,
-            multiplicity: chosen.cluster.len(),
-            multiple,
-            stuck: known.modes.omega,
-            free: match free {
-                Ok(modes) => modes.omega,
-                Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => return Err(e),
-                Err(_) => Vec::new(),
-            },
-        })
-    }
+/// Selects a mode as [`Model::select_mode`], with contacts stuck or linearised about a static state, and the caller
+/// may stop it.
+#[doc(hidden)]
+pub(crate) fn select_mode_with(
+    model: &Model,
+    choice: ModeChoice<'_>,
+    contacts: ContactState<'_>,
+    interrupt: &Interrupt<'_>,
+) -> Result<SelectedMode> {
+    interrupt.phase(Phase::Modes, 0.0)?;
+    choice.check(model.ndof())?;
+    let mut restricted;
+    let choice = match choice {
+        ModeChoice::Shape(shape) => {
+            restricted = try_vec(model.structure().ndof(), Complex64::ZERO, CONTEXT)?;
+            model.structure().degrees().restrict(shape, &mut restricted);
+            ModeChoice::Shape(&restricted)
+        }
+        other => other,
+    };
+    let pencil = model.pencil(Wave::Harmonic(1), contacts)?;
+    let (known, chosen) = KnownModes::find(&pencil, choice, interrupt)?;
+    known.check_frequency(chosen.index)?;
+    let n = model.structure().ndof();
+    let shapes = &known.modes.shapes[chosen.cluster.start * n..chosen.cluster.end * n];
+    let (shape, multiple) =
+        repeated_modes::resolve(&pencil, shapes, chosen.index - chosen.cluster.start, chosen.projection)?;
+    let free = model
+        .pencil(Wave::Harmonic(1), ContactState::Free)
+        .and_then(|free| lowest_by_quotient(&free, known.modes.omega.len(), interrupt));
+    Ok(SelectedMode {
+        index: chosen.index,
+        omega: known.modes.omega[chosen.index],
+        shape,
+        multiplicity: chosen.cluster.len(),
+        multiple,
+        stuck: known.modes.omega,
+        free: match free {
+            Ok(modes) => modes.omega,
+            Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => return Err(e),
+            Err(_) => Vec::new(),
+        },
+    })
 }
 
 /// The chosen mode, and the modes of its frequency.

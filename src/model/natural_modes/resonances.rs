@@ -85,87 +85,77 @@ const RESONANCES_MAX_ITERATIONS: usize = 10_000;
 
 const CONTEXT: &str = "the resonances";
 
-impl Model {
-    /// The resonances of all harmonics in which forces vibrate, see [`Self::resonances`].
-    ///
-    /// # Errors
-    /// As [`Self::resonances`].
-    #[doc(hidden)]
-    pub fn forced_resonances(
-        &self,
-        range: Range,
-        contacts: ContactState<'_>,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<Option<Vec<Resonance>>> {
-        let mut found = Vec::new();
-        let mut forced = Vec::new();
-        for force in self.excitation().forces() {
-            let h = force.harmonic;
-            if h == 0 || force.value == Complex64::ZERO || forced.contains(&h) {
-                continue;
-            }
-            try_push(&mut forced, h, CONTEXT)?;
-            let Some(own) = self.resonances(h, range, contacts, interrupt)? else {
-                return Ok(None);
-            };
-            try_extend(&mut found, &own, CONTEXT)?;
+/// The resonances of all harmonics in which forces vibrate, see [`Model::resonances`].
+#[doc(hidden)]
+pub(crate) fn forced_resonances(
+    model: &Model,
+    range: Range,
+    contacts: ContactState<'_>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<Vec<Resonance>>> {
+    let mut found = Vec::new();
+    let mut forced = Vec::new();
+    for force in model.excitation().forces() {
+        let h = force.harmonic;
+        if h == 0 || force.value == Complex64::ZERO || forced.contains(&h) {
+            continue;
         }
-        found.sort_by(|a, b| a.omega.total_cmp(&b.omega));
-        Ok(Some(found))
+        try_push(&mut forced, h, CONTEXT)?;
+        let Some(own) = model.resonances(h, range, contacts, interrupt)? else {
+            return Ok(None);
+        };
+        try_extend(&mut found, &own, CONTEXT)?;
     }
+    found.sort_by(|a, b| a.omega.total_cmp(&b.omega));
+    Ok(Some(found))
+}
 
-    /// The resonances of harmonic `h` between two excitation frequencies, ascending: natural frequencies over h, with
-    /// the contacts in `contacts` and half widths from the damping. `None` where they cannot be had, as when there are
-    /// too many of them.
-    ///
-    /// Modes are those of the Hermitian part of K; its skew part adds to the damping. With mass-normalised shapes Φ,
-    /// poles are the eigenvalues of diag(ω) + ½i Φᴴ(C + Im K/ω)Φ, exact to first order in the damping.
-    #[doc(hidden)]
-    pub fn resonances(
-        &self,
-        h: usize,
-        range: Range,
-        contacts: ContactState<'_>,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<Option<Vec<Resonance>>> {
-        match self.damped_frequencies(h, range, contacts, interrupt) {
-            Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => Err(e),
-            found => Ok(found.ok().flatten()),
-        }
+/// The resonances of harmonic `h` between two excitation frequencies, ascending.
+#[doc(hidden)]
+pub(crate) fn resonances(
+    model: &Model,
+    h: usize,
+    range: Range,
+    contacts: ContactState<'_>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<Vec<Resonance>>> {
+    match small_motion_frequencies(model, h, range, contacts, interrupt) {
+        Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => Err(e),
+        found => Ok(found.ok().flatten()),
     }
+}
 
-    fn damped_frequencies(
-        &self,
-        h: usize,
-        range: Range,
-        contacts: ContactState<'_>,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<Option<Vec<Resonance>>> {
-        let structure = self.structure();
-        let stiffness = self.stiffness_at_small_motion(Wave::Harmonic(h), contacts)?;
-        let mass = structure.inertia(Wave::Harmonic(h))?;
-        let structural = structure.wave_matrix(MatrixKind::Structural, h)?;
-        let terms = [
-            (Complex64::ONE, &stiffness, Form::Plain),
-            (Complex64::I, &structural, Form::Plain),
-        ];
-        let stiffness = Csc::sum(mass.rows, &terms)?;
-        if self.structure().has_gyroscopic_modes(h)? {
-            let problem = Quadratic {
-                mass: &mass,
-                damping: &structure.wave_matrix(MatrixKind::Damping, h)?,
-                stiffness: &stiffness,
-            };
-            return gyroscopic_frequencies(h, range, &problem, interrupt);
-        }
-        damped_frequencies(
-            h,
-            range,
-            (&stiffness, &mass),
-            || structure.wave_matrix(MatrixKind::Damping, h),
-            interrupt,
-        )
+fn small_motion_frequencies(
+    model: &Model,
+    h: usize,
+    range: Range,
+    contacts: ContactState<'_>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<Vec<Resonance>>> {
+    let structure = model.structure();
+    let stiffness = model.stiffness_at_small_motion(Wave::Harmonic(h), contacts)?;
+    let mass = structure.inertia(Wave::Harmonic(h))?;
+    let structural = structure.wave_matrix(MatrixKind::Structural, h)?;
+    let terms = [
+        (Complex64::ONE, &stiffness, Form::Plain),
+        (Complex64::I, &structural, Form::Plain),
+    ];
+    let stiffness = Csc::sum(mass.rows, &terms)?;
+    if model.structure().has_gyroscopic_modes(h)? {
+        let problem = Quadratic {
+            mass: &mass,
+            damping: &structure.wave_matrix(MatrixKind::Damping, h)?,
+            stiffness: &stiffness,
+        };
+        return gyroscopic_frequencies(h, range, &problem, interrupt);
     }
+    damped_frequencies(
+        h,
+        range,
+        (&stiffness, &mass),
+        || structure.wave_matrix(MatrixKind::Damping, h),
+        interrupt,
+    )
 }
 
 /// The resonances of harmonic `h` where gyroscopic forces act at a fixed speed, which are no small damping: eigenvalues of the

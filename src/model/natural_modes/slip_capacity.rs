@@ -67,111 +67,108 @@ impl Resonance {
     }
 }
 
-impl Model {
-    /// The undamped resonance because of which the model has no bounded response at the angular frequency `omega`, if
-    /// one is found.
-    ///
-    /// # Errors
-    /// `OutOfMemory`, and those of [`Self::sprung_stiffness`]; `StoppedByCaller`.
-    #[doc(hidden)]
-    pub fn overload(&self, omega: f64, interrupt: &Interrupt<'_>) -> Result<Option<Resonance>> {
-        let at_frequency = self.at_frequency(omega)?;
-        let mut last = None;
-        for force in self.excitation().forces() {
-            if last == Some(force.harmonic) || force.value == Complex64::ZERO {
-                continue;
-            }
-            last = Some(force.harmonic);
-            let found = at_frequency.resonance(omega, force.harmonic, interrupt)?;
-            if found.as_ref().is_some_and(Resonance::is_overloaded) {
-                return Ok(found);
+/// The undamped resonance because of which the model has no bounded response at the angular frequency `omega`, if one
+/// is found.
+#[doc(hidden)]
+pub(crate) fn overload(model: &Model, omega: f64, interrupt: &Interrupt<'_>) -> Result<Option<Resonance>> {
+    let at_frequency = model.at_frequency(omega)?;
+    let mut last = None;
+    for force in model.excitation().forces() {
+        if last == Some(force.harmonic) || force.value == Complex64::ZERO {
+            continue;
+        }
+        last = Some(force.harmonic);
+        let found = at_frequency.resonance(omega, force.harmonic, interrupt)?;
+        if found.as_ref().is_some_and(Resonance::is_overloaded) {
+            return Ok(found);
+        }
+    }
+    Ok(None)
+}
+
+/// The motion nearest to the forced one that the structure without its contacts does not resist in `harmonic` of
+/// `omega`.
+#[doc(hidden)]
+pub(crate) fn resonance(
+    model: &Model,
+    omega: f64,
+    harmonic: usize,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<Resonance>> {
+    interrupt.check()?;
+    let n = model.structure().ndof();
+    let structure = model.structure();
+    let wave = Wave::Harmonic(harmonic);
+    let springs = model.contacts().iter().filter(|c| c.role() == Role::Spring);
+    let stiffness = model.sprung_stiffness(wave, springs)?;
+    let damping = structure.wave_matrix(MatrixKind::Damping, harmonic)?;
+    let structural = structure.wave_matrix(MatrixKind::Structural, harmonic)?;
+    let mass = structure.wave_matrix(MatrixKind::Mass, harmonic)?;
+    let w = harmonic as f64 * omega;
+    let square = omega * omega * (harmonic.max(1) as f64).powi(2);
+    let dynamic = |inertia: f64| {
+        let terms = [
+            (Complex64::ONE, &stiffness, Form::Plain),
+            (Complex64::new(0.0, w), &damping, Form::Plain),
+            (Complex64::I, &structural, Form::Plain),
+            (inertia.into(), &mass, Form::Plain),
+        ];
+        Csc::sum(n, &terms)
+    };
+    let z = dynamic(-w * w)?;
+    // The force itself is the starting vector: among repeated resonances it selects the motion on which it does
+    // most work.
+    let mut forces = try_vec(n, Complex64::ZERO, CONTEXT)?;
+    model.add_forces_to(harmonic, 1.0, &mut forces);
+    let Some(shape) = left_null(
+        &dynamic(-w * w - SLIP_CAPACITY_SHIFT * square)?,
+        &mass,
+        &forces,
+        interrupt,
+    )?
+    else {
+        return Ok(None);
+    };
+    let r = (0..n).map(|j| {
+        let column = z.column(j).map(|(i, v)| shape[i].conj() * v);
+        column.sum::<Complex64>().norm()
+    });
+    let resistance: f64 = r.sum();
+    let work = |(x, f): (&Complex64, &Complex64)| x.conj() * f;
+    let force = shape.iter().zip(&forces).map(work).sum::<Complex64>().norm();
+    let size: f64 = shape.iter().zip(&forces).map(|z| work(z).norm()).sum();
+    let slip_capacity = slip_capacity(model, harmonic, &shape);
+    let excess = force - slip_capacity * (1.0 + SLIP_CAPACITY_ROUNDING) - SLIP_CAPACITY_ROUNDING * size;
+    let inertia = square * quadratic(&mass, &shape);
+    let growth = if excess > 0.0 && inertia > 0.0 {
+        // Without any resistance the growth is infinite.
+        excess / resistance * (inertia / force)
+    } else {
+        0.0
+    };
+    Ok(Some(Resonance {
+        harmonic,
+        shape,
+        force,
+        slip_capacity,
+        growth,
+    }))
+}
+
+/// Largest part of a force along the motion φ in a harmonic that the contacts can balance: Σ |w φ| 4L/π.
+fn slip_capacity(model: &Model, harmonic: usize, shape: &[Complex64]) -> f64 {
+    let wave = if harmonic == 0 { 1.0 } else { 4.0 / PI };
+    let mut sum = 0.0;
+    for contact in model.contacts().iter().filter(|c| c.role() == Role::Active) {
+        for k in 0..contact.directions() {
+            let motion = along(&model.structure().contact_row(contact, k, harmonic), shape).norm();
+            // A contact without relative motion contributes nothing, whatever its force.
+            if motion > 0.0 {
+                sum += wave * contact.largest_force() * motion;
             }
         }
-        Ok(None)
     }
-
-    /// The motion nearest to the forced one that the structure without its contacts does not resist in `harmonic` of
-    /// `omega`; `None` where inverse iteration finds none.
-    ///
-    /// # Errors
-    /// As [`Self::overload`].
-    #[doc(hidden)]
-    pub fn resonance(&self, omega: f64, harmonic: usize, interrupt: &Interrupt<'_>) -> Result<Option<Resonance>> {
-        interrupt.check()?;
-        let n = self.structure().ndof();
-        let structure = self.structure();
-        let wave = Wave::Harmonic(harmonic);
-        let springs = self.contacts().iter().filter(|c| c.role() == Role::Spring);
-        let stiffness = self.sprung_stiffness(wave, springs)?;
-        let damping = structure.wave_matrix(MatrixKind::Damping, harmonic)?;
-        let structural = structure.wave_matrix(MatrixKind::Structural, harmonic)?;
-        let mass = structure.wave_matrix(MatrixKind::Mass, harmonic)?;
-        let w = harmonic as f64 * omega;
-        let square = omega * omega * (harmonic.max(1) as f64).powi(2);
-        let dynamic = |inertia: f64| {
-            let terms = [
-                (Complex64::ONE, &stiffness, Form::Plain),
-                (Complex64::new(0.0, w), &damping, Form::Plain),
-                (Complex64::I, &structural, Form::Plain),
-                (inertia.into(), &mass, Form::Plain),
-            ];
-            Csc::sum(n, &terms)
-        };
-        let z = dynamic(-w * w)?;
-        // The force itself is the starting vector: among repeated resonances it selects the motion on which it does
-        // most work.
-        let mut forces = try_vec(n, Complex64::ZERO, CONTEXT)?;
-        self.add_forces_to(harmonic, 1.0, &mut forces);
-        let Some(shape) = left_null(
-            &dynamic(-w * w - SLIP_CAPACITY_SHIFT * square)?,
-            &mass,
-            &forces,
-            interrupt,
-        )?
-        else {
-            return Ok(None);
-        };
-        let r = (0..n).map(|j| {
-            let column = z.column(j).map(|(i, v)| shape[i].conj() * v);
-            column.sum::<Complex64>().norm()
-        });
-        let resistance: f64 = r.sum();
-        let work = |(x, f): (&Complex64, &Complex64)| x.conj() * f;
-        let force = shape.iter().zip(&forces).map(work).sum::<Complex64>().norm();
-        let size: f64 = shape.iter().zip(&forces).map(|z| work(z).norm()).sum();
-        let slip_capacity = self.slip_capacity(harmonic, &shape);
-        let excess = force - slip_capacity * (1.0 + SLIP_CAPACITY_ROUNDING) - SLIP_CAPACITY_ROUNDING * size;
-        let inertia = square * quadratic(&mass, &shape);
-        let growth = if excess > 0.0 && inertia > 0.0 {
-            // Without any resistance the growth is infinite.
-            excess / resistance * (inertia / force)
-        } else {
-            0.0
-        };
-        Ok(Some(Resonance {
-            harmonic,
-            shape,
-            force,
-            slip_capacity,
-            growth,
-        }))
-    }
-
-    /// Largest part of a force along the motion φ in a harmonic that the contacts can balance: Σ |w φ| 4L/π.
-    fn slip_capacity(&self, harmonic: usize, shape: &[Complex64]) -> f64 {
-        let wave = if harmonic == 0 { 1.0 } else { 4.0 / PI };
-        let mut sum = 0.0;
-        for contact in self.contacts().iter().filter(|c| c.role() == Role::Active) {
-            for k in 0..contact.directions() {
-                let motion = along(&self.structure().contact_row(contact, k, harmonic), shape).norm();
-                // A contact without relative motion contributes nothing, whatever its force.
-                if motion > 0.0 {
-                    sum += wave * contact.largest_force() * motion;
-                }
-            }
-        }
-        sum
-    }
+    sum
 }
 
 /// Motion φ with φᴴ Z = 0 up to rounding, by inverse iteration φ ← S⁻ᴴ M φ from the force, with S = Z − ε M; the

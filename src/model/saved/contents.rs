@@ -17,43 +17,35 @@ pub enum Block {
     Previous,
 }
 
-impl Model {
-    /// A block of a matrix over the independent degrees of freedom. `None` where it was not given: it is then zero,
-    /// or for the block to the previous sector the transpose of the block to the next one.
-    ///
-    /// # Errors
-    /// `Unsupported` for a matrix that was given per nodal diameter.
-    #[doc(hidden)]
-    pub fn block(&self, kind: MatrixKind, block: Block) -> Result<Option<&KeptMatrix>> {
-        let blocks = &self.structure().blocks[kind as usize];
-        if !blocks.diameters.is_empty() {
-            return fail!(
-                Unsupported,
-                "the {} matrix was given per nodal diameter: it has no sector blocks",
-                kind.name()
-            );
-        }
-        Ok(match block {
-            Block::Own => &blocks.own,
-            Block::Next => &blocks.next,
-            Block::Previous => &blocks.previous,
-        }
-        .as_ref())
+/// A block of a matrix over the independent degrees of freedom.
+#[doc(hidden)]
+pub(crate) fn block(model: &Model, kind: MatrixKind, block: Block) -> Result<Option<&KeptMatrix>> {
+    let blocks = &model.structure().blocks[kind as usize];
+    if !blocks.diameters.is_empty() {
+        return fail!(
+            Unsupported,
+            "the {} matrix was given per nodal diameter: it has no sector blocks",
+            kind.name()
+        );
     }
+    Ok(match block {
+        Block::Own => &blocks.own,
+        Block::Next => &blocks.next,
+        Block::Previous => &blocks.previous,
+    }
+    .as_ref())
+}
 
-    /// Normal load N₀, coefficient c of its growth N₀ + cΩ², and gap of a contact, as they were given; `None` for an
-    /// unknown contact.
-    #[must_use]
-    pub fn given_load(&self, id: usize) -> Option<(f64, f64, f64)> {
-        let contact = self.contacts().get(id)?;
-        let at_speed = self.speed_loads().iter().find(|load| load.contact == id);
-        Some(at_speed.map_or(
-            (
-                contact.constant(Constant::Preload),
-                0.0,
-                contact.constant(Constant::Gap),
-            ),
-            |load| (load.preload, load.per_speed2, load.gap),
-        ))
-    }
+/// Normal load N₀, coefficient c of its growth N₀ + cΩ², and gap of a contact, as they were given.
+pub(crate) fn given_load(model: &Model, id: usize) -> Option<(f64, f64, f64)> {
+    let contact = model.contacts().get(id)?;
+    let at_speed = model.speed_loads().iter().find(|load| load.contact == id);
+    Some(at_speed.map_or(
+        (
+            contact.constant(Constant::Preload),
+            0.0,
+            contact.constant(Constant::Gap),
+        ),
+        |load| (load.preload, load.per_speed2, load.gap),
+    ))
 }

@@ -6,6 +6,7 @@
 
 use crate::byte_stream::ByteWriter;
 use crate::contact::Contact;
+use crate::contact::described::saved_contact;
 use crate::error::{Result, fail};
 use crate::linalg::sparse_storage::sparse::Columns;
 use crate::model::matrices::speed::Speed;
@@ -84,150 +85,140 @@ fn digest(write: impl FnOnce(&mut ByteWriter<'_>)) -> u64 {
     out.digest()
 }
 
-impl Model {
-    /// The fingerprint of the model.
-    pub(crate) fn fingerprint(&self) -> Fingerprint {
-        let structure = &self.structure;
-        let forces = |constant: bool| {
-            let all = self.excitation.forces().iter();
-            all.filter(|force| (force.harmonic == 0) == constant)
-                .map(|force| {
-                    digest(|out| {
-                        out.count(force.dof);
-                        out.count(force.harmonic);
-                        out.f64(force.value.re);
-                        out.f64(force.value.im);
-                        out.bool(force.per_omega2);
-                        if force.per_speed2 != 0.0 {
-                            out.f64(force.per_speed2);
-                        }
-                    })
-                })
-                // In any order.
-                .fold(0, u64::wrapping_add)
-        };
-        let springs = self.springs.iter().map(|spring| {
-            digest(|out| {
-                out.optional(spring.dof_a);
-                out.optional(spring.dof_b);
-                out.i64(spring.sector_offset);
-                out.f64(spring.stiffness);
-            })
-        });
-        Fingerprint {
-            degrees: digest(|out| {
-                out.count(structure.degrees.given());
-                out.count(structure.sectors);
-                save_degrees(&structure.degrees, out);
-            }),
-            matrices: digest(|out| {
-                let kinds = [
-                    MatrixKind::Mass,
-                    MatrixKind::Stiffness,
-                    MatrixKind::Gyroscopic,
-                    MatrixKind::StiffnessSpeed2,
-                ];
-                self.blocks_to(&kinds, out);
-            }),
-            speed: digest(|out| {
-                let (per_omega, speed) = match structure.speed {
-                    Speed::Fixed(speed) => (false, speed),
-                    Speed::PerOmega(p) => (true, p),
-                };
-                out.bool(per_omega);
-                out.f64(speed);
-            }),
-            damping: digest(|out| {
-                for value in [structure.rayleigh.0, structure.rayleigh.1, structure.loss_factor] {
-                    out.f64(value);
-                }
-                self.damping_matrices_to(out);
-            }),
-            springs: springs.fold(0, u64::wrapping_add),
-            contacts: digest(|out| {
-                for contact in &self.contacts {
-                    contact.digest_to(out);
-                    for place in contact.slider() {
-                        out.f64(place);
+/// The fingerprint of the model.
+pub(crate) fn fingerprint(model: &Model) -> Fingerprint {
+    let structure = &model.structure;
+    let forces = |constant: bool| {
+        let all = model.excitation.forces().iter();
+        all.filter(|force| (force.harmonic == 0) == constant)
+            .map(|force| {
+                digest(|out| {
+                    out.count(force.dof);
+                    out.count(force.harmonic);
+                    out.f64(force.value.re);
+                    out.f64(force.value.im);
+                    out.bool(force.per_omega2);
+                    if force.per_speed2 != 0.0 {
+                        out.f64(force.per_speed2);
                     }
-                }
-                for load in &self.speed_loads {
-                    out.count(load.contact);
-                    out.f64(load.per_speed2);
-                }
-            }),
-            constant_forces: forces(true),
-            vibrating_forces: forces(false),
-            engine_order: structure.engine_order,
-        }
-    }
-}
-
-impl Model {
-    /// Writes matrices of some kinds.
-    fn blocks_to(&self, kinds: &[MatrixKind], out: &mut ByteWriter<'_>) {
-        for kind in kinds {
-            let blocks = &self.structure.blocks[*kind as usize];
-            // A matrix of zeros is as good as none; no coupling to the previous sector stands for the transpose.
-            for block in [&blocks.own, &blocks.next] {
-                saved_matrix::save(block.as_ref().filter(|a| a.stored() > 0), out);
+                })
+            })
+            // In any order.
+            .fold(0, u64::wrapping_add)
+    };
+    let springs = model.springs.iter().map(|spring| {
+        digest(|out| {
+            out.optional(spring.dof_a);
+            out.optional(spring.dof_b);
+            out.i64(spring.sector_offset);
+            out.f64(spring.stiffness);
+        })
+    });
+    Fingerprint {
+        degrees: digest(|out| {
+            out.count(structure.degrees.given());
+            out.count(structure.sectors);
+            save_degrees(&structure.degrees, out);
+        }),
+        matrices: digest(|out| {
+            let kinds = [
+                MatrixKind::Mass,
+                MatrixKind::Stiffness,
+                MatrixKind::Gyroscopic,
+                MatrixKind::StiffnessSpeed2,
+            ];
+            blocks_to(model, &kinds, out);
+        }),
+        speed: digest(|out| {
+            let (per_omega, speed) = match structure.speed {
+                Speed::Fixed(speed) => (false, speed),
+                Speed::PerOmega(p) => (true, p),
+            };
+            out.bool(per_omega);
+            out.f64(speed);
+        }),
+        damping: digest(|out| {
+            for value in [structure.rayleigh.0, structure.rayleigh.1, structure.loss_factor] {
+                out.f64(value);
             }
-            saved_matrix::save(blocks.previous.as_ref(), out);
-            saved_matrix::save_list(&blocks.diameters, out);
-        }
-    }
-
-    /// Writes every kind of damping that is not a plain number.
-    fn damping_matrices_to(&self, out: &mut ByteWriter<'_>) {
-        self.blocks_to(&[MatrixKind::Damping, MatrixKind::Structural], out);
-        saved_matrix::save_list(&self.structure.modal_damping, out);
-        self.save_aero(out);
-    }
-
-    /// The digest of a sector, for the wheel that is made of it.
-    pub(crate) fn sector_digest(&self) -> SectorDigest {
-        let all = self.fingerprint();
-        SectorDigest {
-            degrees: all.degrees,
-            matrices: all.matrices,
-            damping: digest(|out| self.damping_matrices_to(out)),
-            springs: all.springs,
-            engine_order: all.engine_order,
-        }
-    }
-
-    /// Refuses a sector other than the one of which this wheel was made. A wheel loaded from bytes of an earlier
-    /// version does not know its sector.
-    ///
-    /// # Errors
-    /// `Argument`, naming the part that differs.
-    pub(crate) fn check_sector(&self, sector: &Self, used: SectorUse) -> Result<()> {
-        let Some(own) = &self.structure.sector else {
-            return Ok(());
-        };
-        own.check(&sector.sector_digest(), used)?;
-        let numbers = |model: &Self| (model.structure.rayleigh, model.structure.loss_factor);
-        if used != SectorUse::Pattern && numbers(self) != numbers(sector) {
-            let ((alpha, beta), loss) = numbers(self);
-            let ((of_sector, beta_of_sector), loss_of_sector) = numbers(sector);
-            return fail!(
-                Argument,
-                "the sector has Rayleigh damping {of_sector}, {beta_of_sector} and the loss factor {loss_of_sector}, the wheel {alpha}, \
-                 {beta} and {loss}; needs the same"
-            );
-        }
-        Ok(())
+            damping_matrices_to(model, out);
+        }),
+        springs: springs.fold(0, u64::wrapping_add),
+        contacts: digest(|out| {
+            for contact in &model.contacts {
+                digest_to(contact, out);
+                for place in contact.slider() {
+                    out.f64(place);
+                }
+            }
+            for load in &model.speed_loads {
+                out.count(load.contact);
+                out.f64(load.per_speed2);
+            }
+        }),
+        constant_forces: forces(true),
+        vibrating_forces: forces(false),
+        engine_order: structure.engine_order,
     }
 }
 
-impl Contact {
-    /// Writes the data of a contact that affect results; for a law of the caller those that its program supplies.
-    fn digest_to(&self, out: &mut ByteWriter<'_>) {
-        self.kind.digest_to(out);
-        self.places_to(out);
-        if self.rigid.is_some() {
-            self.rigid_to(out);
+/// Writes matrices of some kinds.
+fn blocks_to(model: &Model, kinds: &[MatrixKind], out: &mut ByteWriter<'_>) {
+    for kind in kinds {
+        let blocks = &model.structure.blocks[*kind as usize];
+        // A matrix of zeros is as good as none; no coupling to the previous sector stands for the transpose.
+        for block in [&blocks.own, &blocks.next] {
+            saved_matrix::save(block.as_ref().filter(|a| a.stored() > 0), out);
         }
+        saved_matrix::save(blocks.previous.as_ref(), out);
+        saved_matrix::save_list(&blocks.diameters, out);
+    }
+}
+
+/// Writes every kind of damping that is not a plain number.
+fn damping_matrices_to(model: &Model, out: &mut ByteWriter<'_>) {
+    blocks_to(model, &[MatrixKind::Damping, MatrixKind::Structural], out);
+    saved_matrix::save_list(&model.structure.modal_damping, out);
+    model.save_aero(out);
+}
+
+/// The digest of a sector, for the wheel that is made of it.
+pub(crate) fn sector_digest(model: &Model) -> SectorDigest {
+    let all = model.fingerprint();
+    SectorDigest {
+        degrees: all.degrees,
+        matrices: all.matrices,
+        damping: digest(|out| damping_matrices_to(model, out)),
+        springs: all.springs,
+        engine_order: all.engine_order,
+    }
+}
+
+/// Refuses a sector other than the one of which this wheel was made.
+pub(crate) fn check_sector(model: &Model, sector: &Model, used: SectorUse) -> Result<()> {
+    let Some(own) = &model.structure.sector else {
+        return Ok(());
+    };
+    own.check(&sector.sector_digest(), used)?;
+    let numbers = |model: &Model| (model.structure.rayleigh, model.structure.loss_factor);
+    if used != SectorUse::Pattern && numbers(model) != numbers(sector) {
+        let ((alpha, beta), loss) = numbers(model);
+        let ((of_sector, beta_of_sector), loss_of_sector) = numbers(sector);
+        return fail!(
+            Argument,
+            "the sector has Rayleigh damping {of_sector}, {beta_of_sector} and the loss factor {loss_of_sector}, the wheel {alpha}, \
+             {beta} and {loss}; needs the same"
+        );
+    }
+    Ok(())
+}
+
+/// Writes the data of a contact that affect results; for a law of the caller those that its program supplies.
+fn digest_to(contact: &Contact, out: &mut ByteWriter<'_>) {
+    contact.kind.digest_to(out);
+    saved_contact::places_to(contact, out);
+    if contact.rigid.is_some() {
+        saved_contact::rigid_to(contact, out);
     }
 }
 

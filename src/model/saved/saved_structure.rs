@@ -16,69 +16,64 @@ const CONTEXT: &str = "a loaded structure";
 /// Kind: rounding.
 const SAVED_STRUCTURE_UNIT: f64 = 1e-9;
 
-impl Structure {
-    /// Writes the structure as bytes.
-    pub(crate) fn save_to(&self, out: &mut ByteWriter<'_>) {
-        out.count(self.degrees.given());
-        out.count(self.sectors);
-        out.i64(self.engine_order);
-        save_degrees(&self.degrees, out);
-        for blocks in self.blocks.iter() {
-            for block in [&blocks.own, &blocks.next, &blocks.previous] {
-                saved_matrix::save(block.as_ref(), out);
-            }
-            saved_matrix::save_list(&blocks.diameters, out);
+/// Writes the structure as bytes.
+pub(crate) fn save_to(structure: &Structure, out: &mut ByteWriter<'_>) {
+    out.count(structure.degrees.given());
+    out.count(structure.sectors);
+    out.i64(structure.engine_order);
+    save_degrees(&structure.degrees, out);
+    for blocks in structure.blocks.iter() {
+        for block in [&blocks.own, &blocks.next, &blocks.previous] {
+            saved_matrix::save(block.as_ref(), out);
         }
-        for value in [self.rayleigh.0, self.rayleigh.1, self.loss_factor] {
-            out.f64(value);
-        }
-        let (per_omega, speed) = match self.speed {
-            Speed::Fixed(speed) => (false, speed),
-            Speed::PerOmega(p) => (true, p),
-        };
-        out.bool(per_omega);
-        out.f64(speed);
-        saved_matrix::save_list(&self.modal_damping, out);
+        saved_matrix::save_list(&blocks.diameters, out);
     }
+    for value in [structure.rayleigh.0, structure.rayleigh.1, structure.loss_factor] {
+        out.f64(value);
+    }
+    let (per_omega, speed) = match structure.speed {
+        Speed::Fixed(speed) => (false, speed),
+        Speed::PerOmega(p) => (true, p),
+    };
+    out.bool(per_omega);
+    out.f64(speed);
+    saved_matrix::save_list(&structure.modal_damping, out);
+}
 
-    /// Reads a structure from bytes.
-    ///
-    /// # Errors
-    /// `Argument` for bytes that are no structure, and those of [`Structure::new`] and of the faces of a sector.
-    pub(crate) fn load_from(input: &mut ByteReader<'_>) -> Result<Self> {
-        let (given, sectors) = (input.count()?, input.count()?);
-        let mut structure = Self::new(given, sectors)?;
-        structure.engine_order = input.i64()?;
-        structure.degrees = load_degrees(&structure, input)?;
-        let n = structure.ndof();
-        // Residues of all nodal diameters, or of those that are not negative.
-        let diameters = [sectors / 2 + 1, sectors];
-        let mut all: [Blocks; KINDS] = Default::default();
-        for blocks in &mut all {
-            *blocks = Blocks {
-                own: saved_matrix::load(n, input)?,
-                next: saved_matrix::load(n, input)?,
-                previous: saved_matrix::load(n, input)?,
-                diameters: saved_matrix::load_list(n, diameters, input)?,
-            };
-            let coupled = blocks.next.is_some() || blocks.previous.is_some();
-            if (coupled && sectors == 1) || ((coupled || blocks.own.is_some()) && !blocks.diameters.is_empty()) {
-                return Err(input.damaged("blocks of a matrix contradict each other"));
-            }
-        }
-        structure.blocks = Arc::new(all);
-        structure.rayleigh = (input.finite()?, input.finite()?);
-        structure.loss_factor = input.finite()?;
-        if structure.loss_factor < 0.0 {
-            return Err(input.damaged("the loss factor is negative"));
-        }
-        structure.speed = match (input.bool()?, input.finite()?) {
-            (false, speed) => Speed::Fixed(speed),
-            (true, p) => Speed::PerOmega(p),
+/// Reads a structure from bytes.
+pub(crate) fn load_from(input: &mut ByteReader<'_>) -> Result<Structure> {
+    let (given, sectors) = (input.count()?, input.count()?);
+    let mut structure = Structure::new(given, sectors)?;
+    structure.engine_order = input.i64()?;
+    structure.degrees = load_degrees(&structure, input)?;
+    let n = structure.ndof();
+    // Residues of all nodal diameters, or of those that are not negative.
+    let diameters = [sectors / 2 + 1, sectors];
+    let mut all: [Blocks; KINDS] = Default::default();
+    for blocks in &mut all {
+        *blocks = Blocks {
+            own: saved_matrix::load(n, input)?,
+            next: saved_matrix::load(n, input)?,
+            previous: saved_matrix::load(n, input)?,
+            diameters: saved_matrix::load_list(n, diameters, input)?,
         };
-        structure.modal_damping = saved_matrix::load_list(n, diameters, input)?;
-        Ok(structure)
+        let coupled = blocks.next.is_some() || blocks.previous.is_some();
+        if (coupled && sectors == 1) || ((coupled || blocks.own.is_some()) && !blocks.diameters.is_empty()) {
+            return Err(input.damaged("blocks of a matrix contradict each other"));
+        }
     }
+    structure.blocks = Arc::new(all);
+    structure.rayleigh = (input.finite()?, input.finite()?);
+    structure.loss_factor = input.finite()?;
+    if structure.loss_factor < 0.0 {
+        return Err(input.damaged("the loss factor is negative"));
+    }
+    structure.speed = match (input.bool()?, input.finite()?) {
+        (false, speed) => Speed::Fixed(speed),
+        (true, p) => Speed::PerOmega(p),
+    };
+    structure.modal_damping = saved_matrix::load_list(n, diameters, input)?;
+    Ok(structure)
 }
 
 pub(crate) fn save_degrees(degrees: &DegreeMap, out: &mut ByteWriter<'_>) {

@@ -64,70 +64,61 @@ impl BladeModes {
     }
 }
 
-impl Model {
-    /// Reduces a sector to the `modes` lowest cantilever modes of the blade `dofs`: modes with everything else held.
-    /// `dofs` are all degrees of freedom of the blade except those of its root and those with contacts and springs;
-    /// forces may act on them. The error is estimated for `families` tuned modes of each nodal diameter.
-    ///
-    /// # Errors
-    /// `Index` or `Argument` for degrees of freedom that cannot be in a blade, naming them, and for numbers of modes; `Unsupported` for
-    /// matrices of single diameters, modal damping, aerodynamic forces, and a stiffness that is not symmetric; `Singular` for a blade
-    /// that is not held; `StoppedByCaller`.
-    pub fn on_blade_modes(
-        &self,
-        dofs: &[usize],
-        (modes, families): (usize, usize),
-        interrupt: &Interrupt<'_>,
-    ) -> Result<BladeModes> {
-        let structure = self.structure();
-        let has_diameters = structure.blocks.iter().any(|blocks| !blocks.diameters.is_empty());
-        if has_diameters || structure.has_modal_damping() || structure.has_aero() {
-            return fail!(
-                Unsupported,
-                "a blade on its modes in a sector with matrices of single diameters, modal damping or aerodynamic forces"
-            );
-        }
-        let basis = Basis::new(self, dofs, modes, interrupt)?;
-        let mut reduced = Self::cyclic(basis.order, structure.sectors())?;
-        for kind in KINDS {
-            let blocks = &structure.blocks[kind as usize];
-            if let Some(own) = &blocks.own {
-                let own = basis.reduced(own, kind, interrupt)?;
-                reduced.structure.blocks_mut(kind)?.own = Some(KeptMatrix::new(own)?);
-            }
-            for (coupling, is_next) in [(&blocks.next, true), (&blocks.previous, false)] {
-                if let Some(coupling) = coupling {
-                    let moved = Some(KeptMatrix::new(basis.renumbered(coupling, kind)?)?);
-                    let blocks = reduced.structure.blocks_mut(kind)?;
-                    *if is_next {
-                        &mut blocks.next
-                    } else {
-                        &mut blocks.previous
-                    } = moved;
-                }
-            }
-        }
-        copy_numbers(structure, &mut reduced.structure);
-        basis.move_places(self, &mut reduced)?;
-        let mut numbers = Vec::new();
-        for dof in 0..structure.degrees().given() {
-            let number = independent(self, dof).ok().and_then(|number| basis.number[number]);
-            try_push(&mut numbers, number, CONTEXT)?;
-        }
-        // At speed the blade has other modes than those whose squares the estimate compares with.
-        let left_out = if structure.is_rotating() {
-            f64::NAN
-        } else {
-            basis.left_out(self, &reduced, families, interrupt)?
-        };
-        Ok(BladeModes {
-            model: reduced,
-            numbers,
-            first: basis.order - modes,
-            left_out,
-            basis,
-        })
+/// Reduces a sector to the `modes` lowest cantilever modes of the blade `dofs`.
+pub(crate) fn on_blade_modes(
+    model: &Model,
+    dofs: &[usize],
+    (modes, families): (usize, usize),
+    interrupt: &Interrupt<'_>,
+) -> Result<BladeModes> {
+    let structure = model.structure();
+    let has_diameters = structure.blocks.iter().any(|blocks| !blocks.diameters.is_empty());
+    if has_diameters || structure.has_modal_damping() || structure.has_aero() {
+        return fail!(
+            Unsupported,
+            "a blade on its modes in a sector with matrices of single diameters, modal damping or aerodynamic forces"
+        );
     }
+    let basis = Basis::new(model, dofs, modes, interrupt)?;
+    let mut reduced = Model::cyclic(basis.order, structure.sectors())?;
+    for kind in KINDS {
+        let blocks = &structure.blocks[kind as usize];
+        if let Some(own) = &blocks.own {
+            let own = basis.reduced(own, kind, interrupt)?;
+            reduced.structure.blocks_mut(kind)?.own = Some(KeptMatrix::new(own)?);
+        }
+        for (coupling, is_next) in [(&blocks.next, true), (&blocks.previous, false)] {
+            if let Some(coupling) = coupling {
+                let moved = Some(KeptMatrix::new(basis.renumbered(coupling, kind)?)?);
+                let blocks = reduced.structure.blocks_mut(kind)?;
+                *if is_next {
+                    &mut blocks.next
+                } else {
+                    &mut blocks.previous
+                } = moved;
+            }
+        }
+    }
+    copy_numbers(structure, &mut reduced.structure);
+    basis.move_places(model, &mut reduced)?;
+    let mut numbers = Vec::new();
+    for dof in 0..structure.degrees().given() {
+        let number = independent(model, dof).ok().and_then(|number| basis.number[number]);
+        try_push(&mut numbers, number, CONTEXT)?;
+    }
+    // At speed the blade has other modes than those whose squares the estimate compares with.
+    let left_out = if structure.is_rotating() {
+        f64::NAN
+    } else {
+        basis.left_out(model, &reduced, families, interrupt)?
+    };
+    Ok(BladeModes {
+        model: reduced,
+        numbers,
+        first: basis.order - modes,
+        left_out,
+        basis,
+    })
 }
 
 /// Copies damping factors, wave and speed from one structure to another.

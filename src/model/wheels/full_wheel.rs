@@ -23,172 +23,158 @@ const FULL_WHEEL_ROUNDING: f64 = 1e-14;
 /// Kind: block.
 const FULL_WHEEL_OF_ONE_ENTRY: u64 = 20;
 
-impl Structure {
-    /// Number of sectors after which the wave repeats, in space: N / gcd(EO, N). 1 for a plain
-    /// structure.
-    pub fn repeating_sectors(&self) -> usize {
-        self.in_step()
-    }
+/// The number j of sectors, below n = [`Structure::repeating_sectors`], after which the motion is delayed by the n-th
+/// part of the period.
+pub(crate) fn sectors_per_part(structure: &Structure) -> usize {
+    let n = structure.repeating_sectors();
+    let divisor = (structure.sectors() / n) as i128;
+    let waves = (i128::from(structure.engine_order()).rem_euclid(structure.sectors() as i128) / divisor) as usize;
+    (0..n).find(|j| (j * waves) % n == 1 % n).unwrap_or(0)
+}
 
-    /// The number j of sectors, below n = [`Self::repeating_sectors`], after which the motion is delayed by the n-th
-    /// part of the period: x_{s+j}(t + T/n) = x_s(t). It solves j·EO/g = 1 modulo n.
-    pub fn sectors_per_part(&self) -> usize {
-        let n = self.repeating_sectors();
-        let divisor = (self.sectors() / n) as i128;
-        let waves = (i128::from(self.engine_order()).rem_euclid(self.sectors() as i128) / divisor) as usize;
-        (0..n).find(|j| (j * waves) % n == 1 % n).unwrap_or(0)
+/// M, C or K of [`Structure::repeating_sectors`] sectors closed to a ring, sector after sector.
+pub(crate) fn unrolled(structure: &Structure, which: MatrixKind, interrupt: &Interrupt<'_>) -> Result<Csc> {
+    let (alpha, beta) = structure.rayleigh;
+    let mut parts = Vec::new();
+    let mut add = |factor: f64, which: MatrixKind| -> Result<()> {
+        if factor == 0.0 {
+            return Ok(());
+        }
+        try_push(&mut parts, (factor, structure.given_around(which, interrupt)?), CONTEXT)
+    };
+    add(1.0, which)?;
+    let speed = match structure.speed {
+        Speed::Fixed(speed) => speed,
+        Speed::PerOmega(_) => return fail!(Internal, "the speed of rotation depends on the frequency"),
+    };
+    match which {
+        MatrixKind::Damping => {
+            add(alpha, MatrixKind::Mass)?;
+            add(beta, MatrixKind::Stiffness)?;
+            add(speed, MatrixKind::Gyroscopic)?;
+        }
+        MatrixKind::Stiffness => add(speed * speed, MatrixKind::StiffnessSpeed2)?,
+        _ => {}
     }
+    if which == MatrixKind::Damping && !structure.modal_damping.is_empty() {
+        let modal = structure.blocks_of_waves(Structure::modal_damping_of_diameter, interrupt)?;
+        try_push(&mut parts, (1.0, modal), CONTEXT)?;
+    }
+    let aero = match which {
+        MatrixKind::Damping => structure.aero_around(AeroForm::Velocity, interrupt)?,
+        MatrixKind::Stiffness => structure.aero_around(AeroForm::Displacement, interrupt)?,
+        _ => None,
+    };
+    if let Some(aero) = aero {
+        try_push(&mut parts, (1.0, aero), CONTEXT)?;
+    }
+    let mut terms = Vec::new();
+    for (factor, a) in &parts {
+        try_push(&mut terms, ((*factor).into(), a, Form::Plain), CONTEXT)?;
+    }
+    interrupt.check()?;
+    let own = Csc::sum(structure.ndof() * structure.repeating_sectors(), &terms)?;
+    interrupt.check()?;
+    for j in 0..own.cols {
+        if let Some((i, v)) = own.column(j).find(|(_, v)| v.im != 0.0) {
+            return fail!(
+                Unsupported,
+                "{}[{i},{j}] has the imaginary part {}: complex matrices mean nothing in time; use real ones",
+                which.name(),
+                v.im
+            );
+        }
+    }
+    Ok(own)
+}
 
-    /// M, C or K of [`Self::repeating_sectors`] sectors closed to a ring, sector after sector; the damping includes
-    /// Rayleigh and modal damping and ΩG, the stiffness Ω²K₁; aerodynamic forces are in both.
-    ///
-    /// # Errors
-    /// `Unsupported` for complex matrices, which have no meaning in time; `Argument` when a nodal diameter was not
-    /// given; `OutOfMemory`, `StoppedByCaller`.
-    pub fn unrolled(&self, which: MatrixKind, interrupt: &Interrupt<'_>) -> Result<Csc> {
-        let (alpha, beta) = self.rayleigh;
-        let mut parts = Vec::new();
-        let mut add = |factor: f64, which: MatrixKind| -> Result<()> {
-            if factor == 0.0 {
-                return Ok(());
+/// One matrix as the caller gave it, without derived parts, for the sectors of the ring.
+pub(crate) fn given_around(structure: &Structure, which: MatrixKind, interrupt: &Interrupt<'_>) -> Result<Csc> {
+    if structure.blocks[which as usize].diameters.is_empty() {
+        sectors_around(structure, which, interrupt)
+    } else {
+        structure.blocks_of_waves(|structure, d| structure.given_of_diameter(which, d), interrupt)
+    }
+}
+
+/// Assembles the blocks of a sector around the ring.
+fn sectors_around(structure: &Structure, which: MatrixKind, interrupt: &Interrupt<'_>) -> Result<Csc> {
+    let (ndof, sectors) = (structure.ndof(), structure.repeating_sectors());
+    let blocks = &structure.blocks[which as usize];
+    // Each block with the distance from the sector of its columns to that of its rows.
+    let mut parts = Vec::new();
+    if let Some(own) = &blocks.own {
+        try_push(&mut parts, (0, own.expanded()?), CONTEXT)?;
+    }
+    if let Some(next) = &blocks.next {
+        try_push(&mut parts, (sectors - 1, next.expanded()?), CONTEXT)?;
+    }
+    match (&blocks.previous, &blocks.next) {
+        (Some(previous), _) => try_push(&mut parts, (1, previous.expanded()?), CONTEXT)?,
+        (None, Some(next)) => {
+            let transposed = Csc::sum(ndof, &[(Complex64::ONE, next, Form::Transposed)])?;
+            try_push(&mut parts, (1, transposed), CONTEXT)?;
+        }
+        (None, None) => {}
+    }
+    let stored: usize = parts.iter().map(|(_, a)| a.values.len()).sum();
+    let order = ndof * sectors;
+    Csc::from_columns((order, order), stored.saturating_mul(sectors), |column, entries| {
+        let (t, j) = (column / ndof, column % ndof);
+        if j == 0 {
+            interrupt.check_before(FULL_WHEEL_OF_ONE_ENTRY * stored as u64)?;
+        }
+        for (place, (distance, a)) in parts.iter().enumerate() {
+            let row = (t + distance) % sectors * ndof;
+            for (i, v) in a.column(j) {
+                try_push(entries, (row + i, place, v), CONTEXT)?;
             }
-            try_push(&mut parts, (factor, self.given_around(which, interrupt)?), CONTEXT)
-        };
-        add(1.0, which)?;
-        let speed = match self.speed {
-            Speed::Fixed(speed) => speed,
-            Speed::PerOmega(_) => return fail!(Internal, "the speed of rotation depends on the frequency"),
-        };
-        match which {
-            MatrixKind::Damping => {
-                add(alpha, MatrixKind::Mass)?;
-                add(beta, MatrixKind::Stiffness)?;
-                add(speed, MatrixKind::Gyroscopic)?;
-            }
-            MatrixKind::Stiffness => add(speed * speed, MatrixKind::StiffnessSpeed2)?,
-            _ => {}
         }
-        if which == MatrixKind::Damping && !self.modal_damping.is_empty() {
-            let modal = self.blocks_of_waves(Self::modal_damping_of_diameter, interrupt)?;
-            try_push(&mut parts, (1.0, modal), CONTEXT)?;
-        }
-        let aero = match which {
-            MatrixKind::Damping => self.aero_around(AeroForm::Velocity, interrupt)?,
-            MatrixKind::Stiffness => self.aero_around(AeroForm::Displacement, interrupt)?,
-            _ => None,
-        };
-        if let Some(aero) = aero {
-            try_push(&mut parts, (1.0, aero), CONTEXT)?;
-        }
+        Ok(())
+    })
+}
+
+/// The blocks of a ring from the matrices of its waves.
+pub(crate) fn blocks_of_waves(
+    structure: &Structure,
+    wave: impl Fn(&Structure, usize) -> Result<Csc>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Csc> {
+    let (ndof, sectors) = (structure.ndof(), structure.repeating_sectors());
+    let divisor = structure.sectors() / sectors;
+    let share = 1.0 / sectors as f64;
+    let mut waves = Vec::new();
+    for d in 0..sectors {
+        interrupt.check()?;
+        try_push(&mut waves, wave(structure, d * divisor)?, CONTEXT)?;
+    }
+    let largest = waves.iter().fold(0.0_f64, |m, a| m.max(a.max_abs()));
+    let mut entries = Vec::new();
+    for offset in 0..sectors {
         let mut terms = Vec::new();
-        for (factor, a) in &parts {
-            try_push(&mut terms, ((*factor).into(), a, Form::Plain), CONTEXT)?;
+        for (d, a) in waves.iter().enumerate() {
+            interrupt.check_before(FULL_WHEEL_OF_ONE_ENTRY * a.values.len() as u64)?;
+            let turn = structure.wave_phase((d * divisor) as i64, -(offset as i64));
+            try_push(&mut terms, (share * turn, a, Form::Plain), CONTEXT)?;
         }
-        interrupt.check()?;
-        let own = Csc::sum(self.ndof() * self.repeating_sectors(), &terms)?;
-        interrupt.check()?;
-        for j in 0..own.cols {
-            if let Some((i, v)) = own.column(j).find(|(_, v)| v.im != 0.0) {
-                return fail!(
-                    Unsupported,
-                    "{}[{i},{j}] has the imaginary part {}: complex matrices mean nothing in time; use real ones",
-                    which.name(),
-                    v.im
-                );
-            }
-        }
-        Ok(own)
-    }
-
-    /// One matrix as the caller gave it, without derived parts, for the sectors of the ring.
-    pub(crate) fn given_around(&self, which: MatrixKind, interrupt: &Interrupt<'_>) -> Result<Csc> {
-        if self.blocks[which as usize].diameters.is_empty() {
-            self.sectors_around(which, interrupt)
-        } else {
-            self.blocks_of_waves(|structure, d| structure.given_of_diameter(which, d), interrupt)
-        }
-    }
-
-    /// Assembles the blocks of a sector around the ring.
-    fn sectors_around(&self, which: MatrixKind, interrupt: &Interrupt<'_>) -> Result<Csc> {
-        let (ndof, sectors) = (self.ndof(), self.repeating_sectors());
-        let blocks = &self.blocks[which as usize];
-        // Each block with the distance from the sector of its columns to that of its rows.
-        let mut parts = Vec::new();
-        if let Some(own) = &blocks.own {
-            try_push(&mut parts, (0, own.expanded()?), CONTEXT)?;
-        }
-        if let Some(next) = &blocks.next {
-            try_push(&mut parts, (sectors - 1, next.expanded()?), CONTEXT)?;
-        }
-        match (&blocks.previous, &blocks.next) {
-            (Some(previous), _) => try_push(&mut parts, (1, previous.expanded()?), CONTEXT)?,
-            (None, Some(next)) => {
-                let transposed = Csc::sum(ndof, &[(Complex64::ONE, next, Form::Transposed)])?;
-                try_push(&mut parts, (1, transposed), CONTEXT)?;
-            }
-            (None, None) => {}
-        }
-        let stored: usize = parts.iter().map(|(_, a)| a.values.len()).sum();
-        let order = ndof * sectors;
-        Csc::from_columns((order, order), stored.saturating_mul(sectors), |column, entries| {
-            let (t, j) = (column / ndof, column % ndof);
-            if j == 0 {
-                interrupt.check_before(FULL_WHEEL_OF_ONE_ENTRY * stored as u64)?;
-            }
-            for (place, (distance, a)) in parts.iter().enumerate() {
-                let row = (t + distance) % sectors * ndof;
-                for (i, v) in a.column(j) {
-                    try_push(entries, (row + i, place, v), CONTEXT)?;
+        let block = Csc::sum(ndof, &terms)?;
+        for j in 0..ndof {
+            for (i, mut v) in block.column(j) {
+                if v.im.abs() <= FULL_WHEEL_ROUNDING * largest {
+                    v.im = 0.0;
                 }
-            }
-            Ok(())
-        })
-    }
-
-    /// The blocks of a ring from the matrices of its waves: with A(φ) = Σ Bⱼ e^{−ijφ} the block that
-    /// couples a sector to the j-th after it is Bⱼ = 1/n Σ_d A(2πd/n) e^{+2πijd/n}.
-    pub(crate) fn blocks_of_waves(
-        &self,
-        wave: impl Fn(&Self, usize) -> Result<Csc>,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<Csc> {
-        let (ndof, sectors) = (self.ndof(), self.repeating_sectors());
-        let divisor = self.sectors() / sectors;
-        let share = 1.0 / sectors as f64;
-        let mut waves = Vec::new();
-        for d in 0..sectors {
-            interrupt.check()?;
-            try_push(&mut waves, wave(self, d * divisor)?, CONTEXT)?;
-        }
-        let largest = waves.iter().fold(0.0_f64, |m, a| m.max(a.max_abs()));
-        let mut entries = Vec::new();
-        for offset in 0..sectors {
-            let mut terms = Vec::new();
-            for (d, a) in waves.iter().enumerate() {
-                interrupt.check_before(FULL_WHEEL_OF_ONE_ENTRY * a.values.len() as u64)?;
-                let turn = self.wave_phase((d * divisor) as i64, -(offset as i64));
-                try_push(&mut terms, (share * turn, a, Form::Plain), CONTEXT)?;
-            }
-            let block = Csc::sum(ndof, &terms)?;
-            for j in 0..ndof {
-                for (i, mut v) in block.column(j) {
-                    if v.im.abs() <= FULL_WHEEL_ROUNDING * largest {
-                        v.im = 0.0;
-                    }
-                    if v.norm() <= FULL_WHEEL_ROUNDING * largest {
-                        continue;
-                    }
-                    interrupt.check_before(sectors as u64)?;
-                    for s in 0..sectors {
-                        let entry = (s * ndof + i, (s + offset) % sectors * ndof + j, v);
-                        try_push(&mut entries, entry, CONTEXT)?;
-                    }
+                if v.norm() <= FULL_WHEEL_ROUNDING * largest {
+                    continue;
+                }
+                interrupt.check_before(sectors as u64)?;
+                for s in 0..sectors {
+                    let entry = (s * ndof + i, (s + offset) % sectors * ndof + j, v);
+                    try_push(&mut entries, entry, CONTEXT)?;
                 }
             }
         }
-        Csc::from_triplets(ndof * sectors, ndof * sectors, entries)
     }
+    Csc::from_triplets(ndof * sectors, ndof * sectors, entries)
 }
 
 #[cfg(test)]

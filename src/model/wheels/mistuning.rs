@@ -55,253 +55,265 @@ pub enum Mistuning<'a> {
     Force,
 }
 
-impl Model {
-    /// Mistunes a wheel by a value δ_s for each sector s; `sector` is the cyclic model of which [`Model::wheel`] made
-    /// it. Changes of matrices refer to the cyclic model, and several calls add up; loads and forces are multiplied.
-    ///
-    /// # Errors
-    /// `Dimension` for another number of sectors, or another model; `NotFinite`; `Index`; `Argument` or `Unsupported`,
-    /// naming what is out of range. The wheel is then unchanged.
-    pub fn mistune(&mut self, sector: &Self, what: &Mistuning<'_>, delta: &[f64]) -> Result<()> {
-        let sectors = sector.structure().sectors();
-        if delta.len() != sectors {
-            return fail!(
-                Dimension,
-                "{} numbers delta, needs one for each of {sectors} sectors",
-                delta.len()
-            );
-        }
-        if let Some(s) = delta.iter().position(|d| !d.is_finite()) {
-            return fail!(NotFinite, "delta[{s}] = {}, needs a finite number", delta[s]);
-        }
-        let contacts = sector.contacts().len();
-        let fits = sectors > 1 && self.structure().sectors() == 1 && self.ndof() == sectors * sector.ndof();
-        if !fits || self.structure().ndof() != sectors * sector.structure().ndof() {
-            return fail!(
-                Dimension,
-                "the wheel has {} degrees of freedom, which are not {sectors} sectors with {}",
-                self.ndof(),
-                sector.ndof()
-            );
-        }
-        let has_damping = matches!(
-            what,
-            Mistuning::Blade(BladeProperty::Damping, _)
-                | Mistuning::Matrix(MatrixKind::Damping | MatrixKind::Structural, _)
+/// Mistunes a wheel by a value δ_s for each sector s.
+pub(crate) fn mistune(model: &mut Model, sector: &Model, what: &Mistuning<'_>, delta: &[f64]) -> Result<()> {
+    let sectors = sector.structure().sectors();
+    if delta.len() != sectors {
+        return fail!(
+            Dimension,
+            "{} numbers delta, needs one for each of {sectors} sectors",
+            delta.len()
         );
-        self.check_sector(
-            sector,
-            if has_damping {
-                SectorUse::DampingPattern
-            } else {
-                SectorUse::Pattern
-            },
-        )?;
-        let mut changed = self.try_clone()?;
-        match *what {
-            Mistuning::Blade(property, dofs) => {
-                // A stiffness, mass or damping below zero has no sense.
-                if let Some(s) = delta.iter().position(|&d| d < -1.0) {
-                    return fail!(
-                        Argument,
-                        "delta[{s}] = {}, needs at least -1: a share, not a per cent",
-                        delta[s]
-                    );
-                }
-                let (kind, entries) = sector.structure().of_blade(property, dofs)?;
-                let share = |d: f64| {
-                    if property == BladeProperty::Frequency {
-                        d * (2.0 + d)
-                    } else {
-                        d
-                    }
-                };
-                changed.add_to_sectors(kind, &entries, sector, |s| share(delta[s]))?;
-            }
-            Mistuning::Matrix(kind, direction) => {
-                let entries = sector.structure().of_direction(kind, direction)?;
-                changed.add_to_sectors(kind, &entries, sector, |s| delta[s])?;
-            }
-            Mistuning::Preload(id) => {
-                if let Some(id) = id.filter(|&id| id >= contacts) {
-                    return fail!(Index, "contact id = {id}, but a sector has {contacts} contacts");
-                }
-                if self.contacts().len() != contacts * sectors {
-                    return fail!(Dimension, "the wheel has other contacts than {sectors} sectors");
-                }
-                for c in 0..contacts {
-                    let without = sector.contacts().get(c).is_some_and(|c| c.without_load().is_some());
-                    if id.map_or(without, |id| id != c) {
-                        continue;
-                    }
-                    for (s, d) in delta.iter().enumerate() {
-                        let at = s * contacts + c;
-                        if let Some((preload, per_speed2, _)) = self.given_load(at) {
-                            changed.set_preload_at_speed(at, preload * (1.0 + d), per_speed2 * (1.0 + d))?;
-                        }
-                    }
-                }
-            }
-            Mistuning::Force => {
-                let n = sector.ndof();
-                changed.excitation.scale_each(|dof| 1.0 + delta[dof / n]);
-            }
-        }
-        *self = changed;
-        Ok(())
     }
-
-    /// Adds a multiple of entries of sector 0, over the independent degrees of freedom of the wheel, for each sector.
-    fn add_to_sectors(
-        &mut self,
-        kind: MatrixKind,
-        entries: &Entries,
-        sector: &Self,
-        factor: impl Fn(usize) -> f64,
-    ) -> Result<()> {
-        let (n, sectors) = (sector.structure().ndof(), sector.structure().sectors());
-        let all = n * sectors;
-        let mut factors = try_vec(sectors, 0.0, CONTEXT)?;
-        for (s, to) in factors.iter_mut().enumerate() {
-            *to = factor(s);
-        }
-        if entries.is_empty() || factors.iter().all(|f| *f == 0.0) {
-            return Ok(());
-        }
-        let of_sector = Csc::from_triplets(all, all, try_copy(entries, CONTEXT)?)?;
-        let added = around(&symmetrised(of_sector, MIRROR_ROUNDING)?, n, &factors)?;
-        let blocks = self.changed_structure().blocks_mut(kind)?;
-        let added = KeptMatrix::new(added)?;
-        let one = Complex64::ONE;
-        blocks.own = Some(match &blocks.own {
-            Some(own) => KeptMatrix::new(Csc::sum(all, &[(one, own, Form::Plain), (one, &added, Form::Plain)])?)?,
-            None => added,
-        });
-        Ok(())
+    if let Some(s) = delta.iter().position(|d| !d.is_finite()) {
+        return fail!(NotFinite, "delta[{s}] = {}, needs a finite number", delta[s]);
     }
-}
-
-impl Structure {
-    /// Entries of a matrix that the caller gives for a sector.
-    pub(crate) fn of_direction(&self, kind: MatrixKind, direction: &MatrixView<'_>) -> Result<Entries> {
-        if matches!(kind, MatrixKind::Gyroscopic | MatrixKind::StiffnessSpeed2) {
-            return fail!(
-                Unsupported,
-                "mistuning of the {} matrix; needs mass, damping, stiffness or structural damping",
-                kind.name()
-            );
-        }
-        if kind == MatrixKind::Mass && direction.part == Part::General {
-            return fail!(Argument, "a mass is symmetric, but its direction was passed as GENERAL");
-        }
-        of_both_sectors(self.degrees(), &direction.copy_in("direction", self.degrees().given())?)
+    let contacts = sector.contacts().len();
+    let fits = sectors > 1 && model.structure().sectors() == 1 && model.ndof() == sectors * sector.ndof();
+    if !fits || model.structure().ndof() != sectors * sector.structure().ndof() {
+        return fail!(
+            Dimension,
+            "the wheel has {} degrees of freedom, which are not {sectors} sectors with {}",
+            model.ndof(),
+            sector.ndof()
+        );
     }
-
-    /// The matrix of a property of the blade of sector 0 over the degrees of freedom of the wheel.
-    pub(crate) fn of_blade(&self, property: BladeProperty, dofs: &[usize]) -> Result<(MatrixKind, Entries)> {
-        let n = self.ndof();
-        // Place of an independent degree of freedom in the blade.
-        let mut place = try_vec(n, None, CONTEXT)?;
-        let mut blade = Vec::new();
-        for (k, &dof) in dofs.iter().enumerate() {
-            if dof >= self.degrees().given() {
-                return fail!(Index, "dofs[{k}] = {dof}, needs 0 .. {}", self.degrees().given() - 1);
-            }
-            if self.degrees().image(dof).0 != 0 {
+    let has_damping = matches!(
+        what,
+        Mistuning::Blade(BladeProperty::Damping, _)
+            | Mistuning::Matrix(MatrixKind::Damping | MatrixKind::Structural, _)
+    );
+    model.check_sector(
+        sector,
+        if has_damping {
+            SectorUse::DampingPattern
+        } else {
+            SectorUse::Pattern
+        },
+    )?;
+    let mut changed = model.try_clone()?;
+    match *what {
+        Mistuning::Blade(property, dofs) => {
+            // A stiffness, mass or damping below zero has no sense.
+            if let Some(s) = delta.iter().position(|&d| d < -1.0) {
                 return fail!(
                     Argument,
-                    "dofs[{k}] = {dof} is on the right face, which the next sector moves; give that of the left face there"
+                    "delta[{s}] = {}, needs at least -1: a share, not a per cent",
+                    delta[s]
                 );
             }
-            let Some(number) = self.degrees().number(dof) else {
-                continue;
+            let (kind, entries) = sector.structure().of_blade(property, dofs)?;
+            let share = |d: f64| {
+                if property == BladeProperty::Frequency {
+                    d * (2.0 + d)
+                } else {
+                    d
+                }
             };
-            if place[number].is_some() {
-                return fail!(Argument, "dofs[{k}] = {dof} is there twice");
+            add_to_sectors(&mut changed, kind, &entries, sector, |s| share(delta[s]))?;
+        }
+        Mistuning::Matrix(kind, direction) => {
+            let entries = sector.structure().of_direction(kind, direction)?;
+            add_to_sectors(&mut changed, kind, &entries, sector, |s| delta[s])?;
+        }
+        Mistuning::Preload(id) => {
+            if let Some(id) = id.filter(|&id| id >= contacts) {
+                return fail!(Index, "contact id = {id}, but a sector has {contacts} contacts");
             }
-            place[number] = Some(blade.len());
-            try_push(&mut blade, number, CONTEXT)?;
-        }
-        if blade.is_empty() {
-            return fail!(Argument, "a blade has no degree of freedom that moves");
-        }
-        let interrupt = Interrupt::none();
-        let ring = self.around_ring()?;
-        let within = |a: &Csc| -> Result<Entries> {
-            let mut entries = Vec::new();
-            for (j, &column) in blade.iter().enumerate() {
-                for (i, v) in a.column(column) {
-                    if let Some(i) = place.get(i).copied().flatten() {
-                        try_push(&mut entries, (i, j, v), CONTEXT)?;
+            if model.contacts().len() != contacts * sectors {
+                return fail!(Dimension, "the wheel has other contacts than {sectors} sectors");
+            }
+            for c in 0..contacts {
+                let without = sector.contacts().get(c).is_some_and(|c| c.without_load().is_some());
+                if id.map_or(without, |id| id != c) {
+                    continue;
+                }
+                for (s, d) in delta.iter().enumerate() {
+                    let at = s * contacts + c;
+                    if let Some((preload, per_speed2, _)) = model.given_load(at) {
+                        changed.set_preload_at_speed(at, preload * (1.0 + d), per_speed2 * (1.0 + d))?;
                     }
                 }
             }
-            Ok(entries)
-        };
-        if property == BladeProperty::Mass {
-            let mut entries = within(&ring.given_around(MatrixKind::Mass, &interrupt)?)?;
-            for (i, j, _) in &mut entries {
-                (*i, *j) = (blade[*i], blade[*j]);
-            }
-            return Ok((MatrixKind::Mass, entries));
         }
-        let stiffness = ring.given_around(MatrixKind::Stiffness, &interrupt)?;
-        let (_, _, gap) = stiffness.worst_pair(Symmetry::Plain);
-        if gap > MIRROR_ROUNDING * stiffness.max_abs() {
-            return fail!(
-                Unsupported,
-                "the stiffness is not symmetric: the share of a blade is unknown; give a direction"
-            );
+        Mistuning::Force => {
+            let n = sector.ndof();
+            changed.excitation.scale_each(|dof| 1.0 + delta[dof / n]);
         }
-        let nb = blade.len();
-        let mut root = Vec::new();
-        for &column in &blade {
-            for (i, _) in stiffness.column(column) {
-                if place.get(i).copied().flatten().is_none() {
-                    try_push(&mut root, i, CONTEXT)?;
-                }
-            }
-        }
-        root.sort_unstable();
-        root.dedup();
-        let nr = root.len();
-        if nb.saturating_mul(nr) > LARGEST_ATTACHMENT {
-            return fail!(
-                Unsupported,
-                "a blade of {nb} degrees of freedom with {nr} where it is attached, needs a product of at most {LARGEST_ATTACHMENT}; give \
-                 a direction"
-            );
-        }
-        // X = K_bb⁻¹ K_br: y = x_b + X x_r.
-        let own = Csc::from_triplets(nb, nb, within(&stiffness)?)?;
-        let mut x = try_vec(nb * nr, Complex64::ZERO, CONTEXT)?;
-        for (b, &column) in blade.iter().enumerate() {
-            for (i, v) in stiffness.column(column) {
-                if let Ok(r) = root.binary_search(&i) {
-                    x[r * nb + b] = v;
-                }
-            }
-        }
-        if nr > 0 {
-            let mut factor = Factor::new(&own, nr)?;
-            factor.factor(&own, &interrupt)?;
-            factor.solve(&mut x, false, &interrupt)?;
-        }
-        let (kind, form) = if property == BladeProperty::Damping {
-            let (alpha, beta) = self.rayleigh;
-            let mut terms = Vec::new();
-            let given = ring.given_around(MatrixKind::Damping, &interrupt)?;
-            let mass = ring.given_around(MatrixKind::Mass, &interrupt)?;
-            for (factor, a) in [(1.0, &given), (alpha, &mass), (beta, &stiffness)] {
-                try_push(&mut terms, (Complex64::from(factor), a, Form::Plain), CONTEXT)?;
-            }
-            let damping = Csc::sum(n * self.sectors(), &terms)?;
-            (MatrixKind::Damping, Csc::from_triplets(nb, nb, within(&damping)?)?)
-        } else {
-            (MatrixKind::Stiffness, own)
-        };
-        Ok((kind, relative(&form, &x, &blade, &root)?))
     }
+    *model = changed;
+    Ok(())
+}
+
+/// Adds a multiple of entries of sector 0, over the independent degrees of freedom of the wheel, for each sector.
+fn add_to_sectors(
+    model: &mut Model,
+    kind: MatrixKind,
+    entries: &Entries,
+    sector: &Model,
+    factor: impl Fn(usize) -> f64,
+) -> Result<()> {
+    let (n, sectors) = (sector.structure().ndof(), sector.structure().sectors());
+    let all = n * sectors;
+    let mut factors = try_vec(sectors, 0.0, CONTEXT)?;
+    for (s, to) in factors.iter_mut().enumerate() {
+        *to = factor(s);
+    }
+    if entries.is_empty() || factors.iter().all(|f| *f == 0.0) {
+        return Ok(());
+    }
+    let of_sector = Csc::from_triplets(all, all, try_copy(entries, CONTEXT)?)?;
+    let added = around(&symmetrised(of_sector, MIRROR_ROUNDING)?, n, &factors)?;
+    let blocks = model.changed_structure().blocks_mut(kind)?;
+    let added = KeptMatrix::new(added)?;
+    let one = Complex64::ONE;
+    blocks.own = Some(match &blocks.own {
+        Some(own) => KeptMatrix::new(Csc::sum(all, &[(one, own, Form::Plain), (one, &added, Form::Plain)])?)?,
+        None => added,
+    });
+    Ok(())
+}
+
+/// Entries of a matrix that the caller gives for a sector.
+pub(crate) fn of_direction(structure: &Structure, kind: MatrixKind, direction: &MatrixView<'_>) -> Result<Entries> {
+    if matches!(kind, MatrixKind::Gyroscopic | MatrixKind::StiffnessSpeed2) {
+        return fail!(
+            Unsupported,
+            "mistuning of the {} matrix; needs mass, damping, stiffness or structural damping",
+            kind.name()
+        );
+    }
+    if kind == MatrixKind::Mass && direction.part == Part::General {
+        return fail!(Argument, "a mass is symmetric, but its direction was passed as GENERAL");
+    }
+    of_both_sectors(
+        structure.degrees(),
+        &direction.copy_in("direction", structure.degrees().given())?,
+    )
+}
+
+/// Independent degrees of freedom of the blade of sector 0, and the place of each degree of freedom of the sector among them.
+struct Blade {
+    numbers: Vec<usize>,
+    place: Vec<Option<usize>>,
+}
+
+fn blade_of(structure: &Structure, dofs: &[usize]) -> Result<Blade> {
+    let mut place = try_vec(structure.ndof(), None, CONTEXT)?;
+    let mut numbers = Vec::new();
+    for (k, &dof) in dofs.iter().enumerate() {
+        if dof >= structure.degrees().given() {
+            return fail!(
+                Index,
+                "dofs[{k}] = {dof}, needs 0 .. {}",
+                structure.degrees().given() - 1
+            );
+        }
+        if structure.degrees().image(dof).0 != 0 {
+            return fail!(
+                Argument,
+                "dofs[{k}] = {dof} is on the right face, which the next sector moves; give that of the left face there"
+            );
+        }
+        let Some(number) = structure.degrees().number(dof) else {
+            continue;
+        };
+        if place[number].is_some() {
+            return fail!(Argument, "dofs[{k}] = {dof} is there twice");
+        }
+        place[number] = Some(numbers.len());
+        try_push(&mut numbers, number, CONTEXT)?;
+    }
+    if numbers.is_empty() {
+        return fail!(Argument, "a blade has no degree of freedom that moves");
+    }
+    Ok(Blade { numbers, place })
+}
+
+/// The matrix of a property of the blade of sector 0 over the degrees of freedom of the wheel.
+pub(crate) fn of_blade(
+    structure: &Structure,
+    property: BladeProperty,
+    dofs: &[usize],
+) -> Result<(MatrixKind, Entries)> {
+    let n = structure.ndof();
+    let Blade { numbers: blade, place } = blade_of(structure, dofs)?;
+    let interrupt = Interrupt::none();
+    let ring = structure.around_ring()?;
+    let within = |a: &Csc| -> Result<Entries> {
+        let mut entries = Vec::new();
+        for (j, &column) in blade.iter().enumerate() {
+            for (i, v) in a.column(column) {
+                if let Some(i) = place.get(i).copied().flatten() {
+                    try_push(&mut entries, (i, j, v), CONTEXT)?;
+                }
+            }
+        }
+        Ok(entries)
+    };
+    if property == BladeProperty::Mass {
+        let mut entries = within(&ring.given_around(MatrixKind::Mass, &interrupt)?)?;
+        for (i, j, _) in &mut entries {
+            (*i, *j) = (blade[*i], blade[*j]);
+        }
+        return Ok((MatrixKind::Mass, entries));
+    }
+    let stiffness = ring.given_around(MatrixKind::Stiffness, &interrupt)?;
+    let (_, _, gap) = stiffness.worst_pair(Symmetry::Plain);
+    if gap > MIRROR_ROUNDING * stiffness.max_abs() {
+        return fail!(
+            Unsupported,
+            "the stiffness is not symmetric: the share of a blade is unknown; give a direction"
+        );
+    }
+    let nb = blade.len();
+    let mut root = Vec::new();
+    for &column in &blade {
+        for (i, _) in stiffness.column(column) {
+            if place.get(i).copied().flatten().is_none() {
+                try_push(&mut root, i, CONTEXT)?;
+            }
+        }
+    }
+    root.sort_unstable();
+    root.dedup();
+    let nr = root.len();
+    if nb.saturating_mul(nr) > LARGEST_ATTACHMENT {
+        return fail!(
+            Unsupported,
+            "a blade of {nb} degrees of freedom with {nr} where it is attached, needs a product of at most {LARGEST_ATTACHMENT}; give \
+             a direction"
+        );
+    }
+    // X = K_bb⁻¹ K_br: y = x_b + X x_r.
+    let own = Csc::from_triplets(nb, nb, within(&stiffness)?)?;
+    let mut x = try_vec(nb * nr, Complex64::ZERO, CONTEXT)?;
+    for (b, &column) in blade.iter().enumerate() {
+        for (i, v) in stiffness.column(column) {
+            if let Ok(r) = root.binary_search(&i) {
+                x[r * nb + b] = v;
+            }
+        }
+    }
+    if nr > 0 {
+        let mut factor = Factor::new(&own, nr)?;
+        factor.factor(&own, &interrupt)?;
+        factor.solve(&mut x, false, &interrupt)?;
+    }
+    let (kind, form) = if property == BladeProperty::Damping {
+        let (alpha, beta) = structure.rayleigh;
+        let mut terms = Vec::new();
+        let given = ring.given_around(MatrixKind::Damping, &interrupt)?;
+        let mass = ring.given_around(MatrixKind::Mass, &interrupt)?;
+        for (factor, a) in [(1.0, &given), (alpha, &mass), (beta, &stiffness)] {
+            try_push(&mut terms, (Complex64::from(factor), a, Form::Plain), CONTEXT)?;
+        }
+        let damping = Csc::sum(n * structure.sectors(), &terms)?;
+        (MatrixKind::Damping, Csc::from_triplets(nb, nb, within(&damping)?)?)
+    } else {
+        (MatrixKind::Stiffness, own)
+    };
+    Ok((kind, relative(&form, &x, &blade, &root)?))
 }
 
 /// Σ_s f_s A_s with the matrix A of sector 0, over the degrees of freedom of the wheel, moved to sector s; n degrees of freedom a

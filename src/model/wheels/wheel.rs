@@ -10,14 +10,13 @@ use crate::error::{Result, fail, try_push};
 use crate::interrupt::Interrupt;
 use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
 use crate::linalg::sparse_storage::sparse::{Csc, Form, Symmetry};
-use crate::model::Model;
-use crate::model::copy;
 use crate::model::excitation::Force;
 use crate::model::matrices::aero::AeroForm;
 use crate::model::matrices::degree_map::DegreeMap;
 use crate::model::matrices::speed::SpeedLoad;
 use crate::model::matrices::spring::Spring;
 use crate::model::matrices::structure::{MAX_DOF, MatrixKind, Structure};
+use crate::model::{Model, copy};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the wheel";
@@ -35,179 +34,167 @@ const KINDS: [MatrixKind; 6] = [
     MatrixKind::StiffnessSpeed2,
 ];
 
-impl Model {
-    /// The whole wheel of a cyclic model as a plain one, a model for every analysis: degree of freedom i of sector s is
-    /// s·n + i, contact c is s·m + c. The engine order is in the phases of the forces. Forces of engine order e that belong
-    /// to one speed are those in harmonic e under engine order 1.
-    ///
-    /// # Errors
-    /// `Unsupported` for a plain model, complex aerodynamic coefficients, and contacts and springs with another sector whose axes
-    /// are turned; `Argument` when a nodal diameter was not given; `Dimension` for a wheel that is too large; `OutOfMemory`.
-    pub fn wheel(&self) -> Result<Self> {
-        let interrupt = Interrupt::none();
-        self.check_axes()?;
-        let (n, sectors) = (self.ndof(), self.structure().sectors());
-        let mut wheel = Self::new(1)?;
-        wheel.structure = self.structure().whole(&interrupt)?;
-        wheel.structure.sector = Some(self.sector_digest());
-        for s in 0..sectors {
-            for contact in self.contacts() {
-                try_push(&mut wheel.contacts, placed(contact, s, n, sectors)?, CONTEXT)?;
-            }
-            for spring in self.springs() {
-                let next = neighbour(s, spring.sector_offset, sectors);
-                let spring = Spring {
-                    dof_a: spring.dof_a.map(|dof| s * n + dof),
-                    dof_b: spring.dof_b.map(|dof| next * n + dof),
-                    sector_offset: 0,
-                    ..*spring
-                };
-                try_push(&mut wheel.springs, spring, CONTEXT)?;
-            }
-            for load in self.speed_loads() {
-                let load = SpeedLoad {
-                    contact: s * self.contacts().len() + load.contact,
-                    ..*load
-                };
-                try_push(&mut wheel.speed_loads, load, CONTEXT)?;
-            }
-            for force in self.excitation().forces() {
-                let force = Force {
-                    dof: s * n + force.dof,
-                    value: force.value * self.structure().phase(force.harmonic, s as i64),
-                    ..*force
-                };
-                wheel.excitation.restore(n * sectors, force)?;
-            }
+/// The whole wheel of a cyclic model as a plain one, a model for every analysis.
+pub(crate) fn wheel(model: &Model) -> Result<Model> {
+    let interrupt = Interrupt::none();
+    check_axes(model)?;
+    let (n, sectors) = (model.ndof(), model.structure().sectors());
+    let mut wheel = Model::new(1)?;
+    wheel.structure = whole(model.structure(), &interrupt)?;
+    wheel.structure.sector = Some(model.sector_digest());
+    for s in 0..sectors {
+        for contact in model.contacts() {
+            try_push(&mut wheel.contacts, placed(contact, s, n, sectors)?, CONTEXT)?;
         }
-        Ok(wheel)
+        for spring in model.springs() {
+            let next = neighbour(s, spring.sector_offset, sectors);
+            let spring = Spring {
+                dof_a: spring.dof_a.map(|dof| s * n + dof),
+                dof_b: spring.dof_b.map(|dof| next * n + dof),
+                sector_offset: 0,
+                ..*spring
+            };
+            try_push(&mut wheel.springs, spring, CONTEXT)?;
+        }
+        for load in model.speed_loads() {
+            let load = SpeedLoad {
+                contact: s * model.contacts().len() + load.contact,
+                ..*load
+            };
+            try_push(&mut wheel.speed_loads, load, CONTEXT)?;
+        }
+        for force in model.excitation().forces() {
+            let force = Force {
+                dof: s * n + force.dof,
+                value: force.value * model.structure().phase(force.harmonic, s as i64),
+                ..*force
+            };
+            wheel.excitation.restore(n * sectors, force)?;
+        }
     }
+    Ok(wheel)
 }
 
-impl Model {
-    /// Refuses contacts with a sector whose Cartesian axes are turned: the side in that sector would need its own
-    /// direction.
-    fn check_axes(&self) -> Result<()> {
-        let Some(faces) = self.structure().degrees().faces() else {
-            return Ok(());
-        };
-        let contacts = self.contacts().iter().enumerate();
-        let contacts = contacts
-            .filter(|(_, contact)| contact.dof_b.iter().any(Option::is_some))
-            .map(|(i, contact)| ("contact", i, contact.sector_offset));
-        let springs = self.springs().iter().enumerate();
-        let springs = springs
-            .filter(|(_, spring)| spring.dof_b.is_some())
-            .map(|(i, spring)| ("spring", i, spring.sector_offset));
-        for (what, i, offset) in contacts.chain(springs) {
-            if faces.turn_of(offset).is_some() {
-                return fail!(
-                    Unsupported,
-                    "the wheel of a sector whose {what} {i} has sector_offset = {offset} in a Cartesian frame, whose axes are \
-                     turned there; use a cylindrical frame"
-                );
-            }
+/// Refuses contacts with a sector whose Cartesian axes are turned: the side in that sector would need its own
+/// direction.
+fn check_axes(model: &Model) -> Result<()> {
+    let Some(faces) = model.structure().degrees().faces() else {
+        return Ok(());
+    };
+    let contacts = model.contacts().iter().enumerate();
+    let contacts = contacts
+        .filter(|(_, contact)| contact.dof_b.iter().any(Option::is_some))
+        .map(|(i, contact)| ("contact", i, contact.sector_offset));
+    let springs = model.springs().iter().enumerate();
+    let springs = springs
+        .filter(|(_, spring)| spring.dof_b.is_some())
+        .map(|(i, spring)| ("spring", i, spring.sector_offset));
+    for (what, i, offset) in contacts.chain(springs) {
+        if faces.turn_of(offset).is_some() {
+            return fail!(
+                Unsupported,
+                "the wheel of a sector whose {what} {i} has sector_offset = {offset} in a Cartesian frame, whose axes are \
+                 turned there; use a cylindrical frame"
+            );
         }
-        Ok(())
     }
+    Ok(())
 }
 
-impl Structure {
-    /// The structure of all sectors, with its matrices.
-    fn whole(&self, interrupt: &Interrupt<'_>) -> Result<Self> {
-        let sectors = self.sectors();
-        if sectors == 1 {
-            return fail!(
-                Unsupported,
-                "a plain structure has no sectors to make a wheel of; use a cyclic model"
-            );
-        }
-        let given = self.degrees().given();
-        let Some(ndof) = given.checked_mul(sectors).filter(|&all| all <= MAX_DOF) else {
-            return fail!(
-                Dimension,
-                "a wheel of {sectors} sectors with {given} degrees of freedom, needs at most {MAX_DOF} in all"
-            );
-        };
-        let mut wheel = Self::new(ndof, 1)?;
-        if let Some(fixed) = self.degrees().fixed() {
-            let mut all = Vec::new();
-            for _ in 0..sectors {
-                for &fixed in fixed {
-                    try_push(&mut all, fixed, CONTEXT)?;
-                }
-            }
-            wheel.degrees = match self.degrees().faces() {
-                None => DegreeMap::new(all, None)?,
-                Some(faces) => DegreeMap::of_wheel(all, faces.try_clone()?, given)?,
-            };
-        }
-        let aero_stiffness = self.has_aero_stiffness();
-        if aero_stiffness && (self.rayleigh.1 != 0.0 || self.loss_factor != 0.0) {
-            return fail!(
-                Unsupported,
-                "the wheel of a sector with aerodynamic forces per displacement and damping by its stiffness; give the \
-                 damping matrix"
-            );
-        }
-        let ring = self.around_ring()?;
-        for kind in KINDS {
-            if let Some(a) = ring.all_around(kind, interrupt)? {
-                wheel.blocks_mut(kind)?.own = Some(KeptMatrix::new(a)?);
+/// The structure of all sectors, with its matrices.
+fn whole(structure: &Structure, interrupt: &Interrupt<'_>) -> Result<Structure> {
+    let sectors = structure.sectors();
+    if sectors == 1 {
+        return fail!(
+            Unsupported,
+            "a plain structure has no sectors to make a wheel of; use a cyclic model"
+        );
+    }
+    let given = structure.degrees().given();
+    let Some(ndof) = given.checked_mul(sectors).filter(|&all| all <= MAX_DOF) else {
+        return fail!(
+            Dimension,
+            "a wheel of {sectors} sectors with {given} degrees of freedom, needs at most {MAX_DOF} in all"
+        );
+    };
+    let mut wheel = Structure::new(ndof, 1)?;
+    if let Some(fixed) = structure.degrees().fixed() {
+        let mut all = Vec::new();
+        for _ in 0..sectors {
+            for &fixed in fixed {
+                try_push(&mut all, fixed, CONTEXT)?;
             }
         }
-        wheel.wheel = Some((sectors, self.engine_order));
-        wheel.rayleigh = self.rayleigh;
-        wheel.loss_factor = self.loss_factor;
-        wheel.loss_of_stiffness = self.loss_of_stiffness;
-        wheel.speed = self.speed;
-        Ok(wheel)
-    }
-
-    /// A copy whose wave repeats only after all sectors.
-    pub(crate) fn around_ring(&self) -> Result<Self> {
-        let mut ring = self.try_clone()?;
-        ring.engine_order = 1;
-        Ok(ring)
-    }
-
-    /// A matrix of all sectors of [`Self::around_ring`] with its aerodynamic and modal parts; `None` where it is zero.
-    fn all_around(&self, kind: MatrixKind, interrupt: &Interrupt<'_>) -> Result<Option<Csc>> {
-        let n = self.ndof() * self.sectors();
-        let mut parts = Vec::new();
-        if self.has(kind) {
-            let a = self.given_around(kind, interrupt)?;
-            let per_diameter = !self.blocks[kind as usize].diameters.is_empty();
-            let a = if per_diameter {
-                symmetrised(a, TRANSFORM_ROUNDING)?
-            } else {
-                a
-            };
-            try_push(&mut parts, a, CONTEXT)?;
-        }
-        let form = match kind {
-            MatrixKind::Damping => Some(AeroForm::Velocity),
-            MatrixKind::Stiffness => Some(AeroForm::Displacement),
-            _ => None,
+        wheel.degrees = match structure.degrees().faces() {
+            None => DegreeMap::new(all, None)?,
+            Some(faces) => DegreeMap::of_wheel(all, faces.try_clone()?, given)?,
         };
-        if let Some(form) = form
-            && let Some(a) = self.aero_around(form, interrupt)?
-        {
-            try_push(&mut parts, a, CONTEXT)?;
-        }
-        if kind == MatrixKind::Damping && self.has_modal_damping() {
-            let a = self.blocks_of_waves(Self::modal_damping_of_diameter, interrupt)?;
-            try_push(&mut parts, symmetrised(a, TRANSFORM_ROUNDING)?, CONTEXT)?;
-        }
-        let mut terms = Vec::new();
-        for a in &parts {
-            try_push(&mut terms, (Complex64::ONE, a, Form::Plain), CONTEXT)?;
-        }
-        Ok(match parts.len() {
-            0 => None,
-            _ => Some(Csc::sum(n, &terms)?),
-        })
     }
+    let aero_stiffness = structure.has_aero_stiffness();
+    if aero_stiffness && (structure.rayleigh.1 != 0.0 || structure.loss_factor != 0.0) {
+        return fail!(
+            Unsupported,
+            "the wheel of a sector with aerodynamic forces per displacement and damping by its stiffness; give the \
+             damping matrix"
+        );
+    }
+    let ring = structure.around_ring()?;
+    for kind in KINDS {
+        if let Some(a) = all_around(&ring, kind, interrupt)? {
+            wheel.blocks_mut(kind)?.own = Some(KeptMatrix::new(a)?);
+        }
+    }
+    wheel.wheel = Some((sectors, structure.engine_order));
+    wheel.rayleigh = structure.rayleigh;
+    wheel.loss_factor = structure.loss_factor;
+    wheel.loss_of_stiffness = structure.loss_of_stiffness;
+    wheel.speed = structure.speed;
+    Ok(wheel)
+}
+
+/// A copy whose wave repeats only after all sectors.
+pub(crate) fn around_ring(structure: &Structure) -> Result<Structure> {
+    let mut ring = structure.try_clone()?;
+    ring.engine_order = 1;
+    Ok(ring)
+}
+
+/// A matrix of all sectors of [`Structure::around_ring`] with its aerodynamic and modal parts; `None` where it is zero.
+fn all_around(structure: &Structure, kind: MatrixKind, interrupt: &Interrupt<'_>) -> Result<Option<Csc>> {
+    let n = structure.ndof() * structure.sectors();
+    let mut parts = Vec::new();
+    if structure.has(kind) {
+        let a = structure.given_around(kind, interrupt)?;
+        let per_diameter = !structure.blocks[kind as usize].diameters.is_empty();
+        let a = if per_diameter {
+            symmetrised(a, TRANSFORM_ROUNDING)?
+        } else {
+            a
+        };
+        try_push(&mut parts, a, CONTEXT)?;
+    }
+    let form = match kind {
+        MatrixKind::Damping => Some(AeroForm::Velocity),
+        MatrixKind::Stiffness => Some(AeroForm::Displacement),
+        _ => None,
+    };
+    if let Some(form) = form
+        && let Some(a) = structure.aero_around(form, interrupt)?
+    {
+        try_push(&mut parts, a, CONTEXT)?;
+    }
+    if kind == MatrixKind::Damping && structure.has_modal_damping() {
+        let a = structure.blocks_of_waves(Structure::modal_damping_of_diameter, interrupt)?;
+        try_push(&mut parts, symmetrised(a, TRANSFORM_ROUNDING)?, CONTEXT)?;
+    }
+    let mut terms = Vec::new();
+    for a in &parts {
+        try_push(&mut terms, (Complex64::ONE, a, Form::Plain), CONTEXT)?;
+    }
+    Ok(match parts.len() {
+        0 => None,
+        _ => Some(Csc::sum(n, &terms)?),
+    })
 }
 
 /// The matrix made exactly symmetric, where only `rounding`, relative to its largest entry, keeps it from being so.

@@ -12,41 +12,44 @@ use num_complex::Complex64;
 /// Kind: block.
 const SINGLE_MATRIX_NUMBERS_TOGETHER: usize = 1 << 16;
 
-impl ContactForces<'_> {
-    /// Fills in Newton's matrix, with memory for G of all harmonics; `false` where there are several relative motions
-    /// or a mean.
-    ///
-    /// # Errors
-    /// `StoppedByCaller`.
-    pub fn fill_single(&self, tables: &[Table], memory: &mut [Complex64], matrix: &mut [f64]) -> Result<bool> {
-        let set = self.condensed.set();
-        if self.condensed.coordinates() != 1 || set.has_mean() {
-            return Ok(false);
-        }
-        let Some((_, jacobian)) = self.result.jacobians.of_motion(0).next() else {
-            return Ok(false);
-        };
-        for (g, table) in memory.iter_mut().zip(tables) {
-            *g = table.value[0];
-        }
-        let (m, g) = (set.packed_len(), &memory[..tables.len()]);
-        // An even number of columns, those of whole harmonics.
-        let together = (SINGLE_MATRIX_NUMBERS_TOGETHER / m).max(2) & !1;
-        let blocks = matrix.chunks_mut(together * m).zip(jacobian.chunks(together * m));
-        for (k, (matrix, jacobian)) in blocks.enumerate() {
-            self.interrupt.check()?;
-            let first = k * together / 2;
-            let kappa = |i: usize| self.condensed.kappa(0, i);
-            self.arch.dispatch(Fill {
-                g,
-                first,
-                jacobian,
-                kappa,
-                matrix,
-            });
-        }
-        Ok(true)
+/// Fills in Newton's matrix, with memory for G of all harmonics; `false` where there are several relative motions
+/// or a mean.
+///
+/// # Errors
+/// `StoppedByCaller`.
+pub(crate) fn fill_single(
+    forces: &ContactForces<'_>,
+    tables: &[Table],
+    memory: &mut [Complex64],
+    matrix: &mut [f64],
+) -> Result<bool> {
+    let set = forces.condensed.set();
+    if forces.condensed.coordinates() != 1 || set.has_mean() {
+        return Ok(false);
     }
+    let Some((_, jacobian)) = forces.result.jacobians.of_motion(0).next() else {
+        return Ok(false);
+    };
+    for (g, table) in memory.iter_mut().zip(tables) {
+        *g = table.value[0];
+    }
+    let (m, g) = (set.packed_len(), &memory[..tables.len()]);
+    // An even number of columns, those of whole harmonics.
+    let together = (SINGLE_MATRIX_NUMBERS_TOGETHER / m).max(2) & !1;
+    let blocks = matrix.chunks_mut(together * m).zip(jacobian.chunks(together * m));
+    for (k, (matrix, jacobian)) in blocks.enumerate() {
+        forces.interrupt.check()?;
+        let first = k * together / 2;
+        let kappa = |i: usize| forces.condensed.kappa(0, i);
+        forces.arch.dispatch(Fill {
+            g,
+            first,
+            jacobian,
+            kappa,
+            matrix,
+        });
+    }
+    Ok(true)
 }
 
 /// Columns of the matrix, beginning with those of the harmonic `first`.

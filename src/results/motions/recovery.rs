@@ -13,20 +13,18 @@ use num_complex::Complex64;
 /// damping.
 type Solution<'a> = (&'a [f64], f64, f64);
 
-impl Branch {
-    /// Packed relative motions of a stored point, in the solver's units.
-    ///
-    /// # Errors
-    /// As [`Recovery::at`].
-    pub(crate) fn relative_motion_at(&self, point: usize, interrupt: &Interrupt<'_>) -> Result<Vec<f64>> {
-        let motion = self.motion_at(point).unwrap_or(&[]);
-        let condensed = self.condensed_at(point);
-        if !condensed.has_exchanges() {
-            return try_copy(motion, CONTEXT);
-        }
-        let recovery = Recovery::at(self, point, interrupt)?;
-        condensed.relative_motion(motion, recovery.forces(), self.table.omega[point])
+/// Packed relative motions of a stored point, in the solver's units.
+///
+/// # Errors
+/// As [`Recovery::at`].
+pub(crate) fn relative_motion_at(branch: &Branch, point: usize, interrupt: &Interrupt<'_>) -> Result<Vec<f64>> {
+    let motion = branch.motion_at(point).unwrap_or(&[]);
+    let condensed = branch.condensed_at(point);
+    if !condensed.has_exchanges() {
+        return try_copy(motion, CONTEXT);
     }
+    let recovery = Recovery::at(branch, point, interrupt)?;
+    condensed.relative_motion(motion, recovery.forces(), branch.table.omega[point])
 }
 
 /// Recovers the motion of points, one at a time.

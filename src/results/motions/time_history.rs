@@ -3,10 +3,10 @@
 use crate::contact::Contact;
 use crate::contact::forms::contact_state::State;
 use crate::error::{Result, fail, try_extend, try_room, try_vec};
-use crate::fourier::HarmonicSet;
-use crate::fourier::jet;
+use crate::fourier::{HarmonicSet, jet};
 use crate::interrupt::{Interrupt, Phase};
 use crate::results::motions::contact_loops::Orbit;
+use crate::results::motions::recovery;
 use crate::results::motions::signal_check::check_time;
 use crate::results::{Branch, Recovery};
 use num_complex::Complex64;
@@ -63,285 +63,245 @@ pub struct ContactSummary {
     pub load_max: f64,
 }
 
-impl Branch {
-    /// Motion of a degree of freedom at a stored point, at ωt = 2πj/n for j = 0 .. n, in the
-    /// caller's unit.
-    ///
-    /// # Errors
-    /// `Index` for an unknown point or degree of freedom, `Dimension` for n outside 1 ..= 2²⁴,
-    /// `OutOfMemory`; `Singular` at an undamped resonance that moves no contact.
-    pub fn time_history(&self, point: usize, dof: usize, n: usize) -> Result<Vec<f64>> {
-        self.time_history_with(point, dof, n, &Interrupt::none())
+/// Motion over time as [`Branch::time_history`], and the caller may stop it.
+pub(crate) fn time_history_with(
+    branch: &Branch,
+    point: usize,
+    dof: usize,
+    n: usize,
+    interrupt: &Interrupt<'_>,
+) -> Result<Vec<f64>> {
+    check_point(branch, point)?;
+    if dof >= branch.ndof() {
+        return fail!(Index, "dof = {dof}, needs 0 .. {}", branch.ndof());
     }
+    check_times(n)?;
+    let condensed = branch.condensed_at(point);
+    let motion = |i, _, x: &[Complex64]| Ok(condensed.motion_row(i, dof)?.along(x));
+    let (set, packed) = recover(branch, point, 1, motion, interrupt)?;
+    let mut history = try_vec(n, 0.0, "a time history")?;
+    for (j, x) in history.iter_mut().enumerate() {
+        check_time(interrupt, j, &set)?;
+        *x = jet(&set, &packed, TAU * j as f64 / n as f64).x;
+    }
+    Ok(history)
+}
 
-    /// Motion over time as [`Self::time_history`], and the caller may stop it.
-    ///
-    /// # Errors
-    /// As [`Self::time_history`]; `StoppedByCaller`.
-    pub fn time_history_with(&self, point: usize, dof: usize, n: usize, interrupt: &Interrupt<'_>) -> Result<Vec<f64>> {
-        self.check_point(point)?;
-        if dof >= self.ndof() {
-            return fail!(Index, "dof = {dof}, needs 0 .. {}", self.ndof());
+/// Loop of a contact as [`Branch::contact_loop`], and the caller may stop it.
+pub(crate) fn contact_loop_with(
+    branch: &Branch,
+    point: usize,
+    contact: usize,
+    n: usize,
+    interrupt: &Interrupt<'_>,
+) -> Result<ContactLoop> {
+    check_contact(branch, point, contact)?;
+    check_times(n)?;
+    with_orbit(branch, point, contact, interrupt, |orbit, length| {
+        let directions = orbit.directions();
+        let mut found = ContactLoop {
+            directions,
+            motion: try_room(n.saturating_mul(directions), LOOP)?,
+            force: try_room(n.saturating_mul(directions), LOOP)?,
+            state: try_room(n, LOOP)?,
+        };
+        orbit.follow(n, interrupt)?.each(interrupt, |slice| {
+            found.motion.extend(slice.motion.iter().map(|x| x * length));
+            found.force.extend(slice.force.iter().map(|f| f * length));
+            found.state.extend(&slice.state);
+        })?;
+        Ok(found)
+    })
+}
+
+/// One direction of [`Branch::contact_loop`].
+pub(crate) fn contact_loop_along(
+    branch: &Branch,
+    (point, contact, direction): (usize, usize, usize),
+    n: usize,
+    wanted: [bool; 3],
+    interrupt: &Interrupt<'_>,
+) -> Result<ContactLoop> {
+    check_contact(branch, point, contact)?;
+    check_times(n)?;
+    with_orbit(branch, point, contact, interrupt, |orbit, length| {
+        let directions = orbit.directions();
+        if direction >= directions {
+            return fail!(Index, "direction = {direction}, needs 0 .. {directions}");
         }
-        check_times(n)?;
-        let condensed = self.condensed_at(point);
-        let motion = |i, _, x: &[Complex64]| Ok(condensed.motion_row(i, dof)?.along(x));
-        let (set, packed) = self.recover(point, 1, motion, interrupt)?;
-        let mut history = try_vec(n, 0.0, "a time history")?;
-        for (j, x) in history.iter_mut().enumerate() {
-            check_time(interrupt, j, &set)?;
-            *x = jet(&set, &packed, TAU * j as f64 / n as f64).x;
-        }
-        Ok(history)
-    }
-
-    /// Relative motions, forces and state of a contact at a stored point, at ωt = 2πj/n for j = 0 .. n.
-    ///
-    /// The force is that of this contact alone, at the motion of the point. Friction in one direction and
-    /// unilateral, tabulated and cubic springs are exact, even if the branch was computed by samples. A law of the
-    /// caller is called with the n times, up to 16,384 at once; one with states is marched over them, which is refused where it
-    /// would take more than 500 MB. Friction in a plane is evaluated step by step over a multiple of n
-    /// samples, at least as many as in the solution. In a cyclic model the contact is that of sector 0. Contacts
-    /// that are linear at any motion have no coordinate of their own, and the whole structure is recovered for
-    /// them.
-    ///
-    /// # Errors
-    /// As [`Self::time_history`], with `Index` for an unknown contact; `Callback` for a law of the caller that
-    /// fails, `NoConvergence` where friction in a plane does not become periodic.
-    pub fn contact_loop(&self, point: usize, contact: usize, n: usize) -> Result<ContactLoop> {
-        self.contact_loop_with(point, contact, n, &Interrupt::none())
-    }
-
-    /// Loop of a contact as [`Self::contact_loop`], and the caller may stop it.
-    ///
-    /// # Errors
-    /// As [`Self::contact_loop`]; `StoppedByCaller`.
-    pub fn contact_loop_with(
-        &self,
-        point: usize,
-        contact: usize,
-        n: usize,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<ContactLoop> {
-        self.check_contact(point, contact)?;
-        check_times(n)?;
-        self.with_orbit(point, contact, interrupt, |orbit, length| {
-            let directions = orbit.directions();
-            let mut found = ContactLoop {
-                directions,
-                motion: try_room(n.saturating_mul(directions), LOOP)?,
-                force: try_room(n.saturating_mul(directions), LOOP)?,
-                state: try_room(n, LOOP)?,
+        let [motion, force, state] = wanted.map(|wanted| if wanted { n } else { 0 });
+        let mut found = ContactLoop {
+            directions: 1,
+            motion: try_room(motion, LOOP)?,
+            force: try_room(force, LOOP)?,
+            state: try_room(state, LOOP)?,
+        };
+        orbit.follow(n, interrupt)?.each(interrupt, |slice| {
+            let along = |values: &[f64], to: &mut Vec<f64>| {
+                to.extend(values.iter().skip(direction).step_by(directions).map(|x| x * length));
             };
-            orbit.follow(n, interrupt)?.each(interrupt, |slice| {
-                found.motion.extend(slice.motion.iter().map(|x| x * length));
-                found.force.extend(slice.force.iter().map(|f| f * length));
+            if wanted[0] {
+                along(&slice.motion, &mut found.motion);
+            }
+            if wanted[1] {
+                along(&slice.force, &mut found.force);
+            }
+            if wanted[2] {
                 found.state.extend(&slice.state);
-            })?;
-            Ok(found)
-        })
-    }
-
-    /// One direction of [`Self::contact_loop`]. `wanted` selects motions, forces and states; what is not selected
-    /// stays empty.
-    ///
-    /// # Errors
-    /// As [`Self::contact_loop`], with `Index` for an unknown direction; `StoppedByCaller`.
-    pub fn contact_loop_along(
-        &self,
-        (point, contact, direction): (usize, usize, usize),
-        n: usize,
-        wanted: [bool; 3],
-        interrupt: &Interrupt<'_>,
-    ) -> Result<ContactLoop> {
-        self.check_contact(point, contact)?;
-        check_times(n)?;
-        self.with_orbit(point, contact, interrupt, |orbit, length| {
-            let directions = orbit.directions();
-            if direction >= directions {
-                return fail!(Index, "direction = {direction}, needs 0 .. {directions}");
             }
-            let [motion, force, state] = wanted.map(|wanted| if wanted { n } else { 0 });
-            let mut found = ContactLoop {
-                directions: 1,
-                motion: try_room(motion, LOOP)?,
-                force: try_room(force, LOOP)?,
-                state: try_room(state, LOOP)?,
-            };
-            orbit.follow(n, interrupt)?.each(interrupt, |slice| {
-                let along = |values: &[f64], to: &mut Vec<f64>| {
-                    to.extend(values.iter().skip(direction).step_by(directions).map(|x| x * length));
-                };
-                if wanted[0] {
-                    along(&slice.motion, &mut found.motion);
-                }
-                if wanted[1] {
-                    along(&slice.force, &mut found.force);
-                }
-                if wanted[2] {
-                    found.state.extend(&slice.state);
-                }
-            })?;
-            Ok(found)
-        })
-    }
+        })?;
+        Ok(found)
+    })
+}
 
-    /// Work, shares of the period and ranges of a contact at a stored point; see [`Self::contact_loop`].
-    ///
-    /// Ranges are exact for the motion of the point, and so are work and shares of friction in one direction and of
-    /// springs. Those of friction in a plane, and the work of laws of velocities or of several motions, are as
-    /// accurate as the samples of the branch, like the branch itself. The work of all contacts sums to
-    /// [`Energy::friction_loss`](crate::results::Energy::friction_loss), up to the error of sampling if laws that
-    /// are exact here were sampled there, or if a law of the caller has a potential.
-    ///
-    /// # Errors
-    /// As [`Self::contact_loop`].
-    pub fn contact_summary(&self, point: usize, contact: usize) -> Result<ContactSummary> {
-        self.contact_summary_with(point, contact, &Interrupt::none())
-    }
-
-    /// Summary of a contact as [`Self::contact_summary`], and the caller may stop it.
-    ///
-    /// # Errors
-    /// As [`Self::contact_summary`]; `StoppedByCaller`.
-    pub fn contact_summary_with(
-        &self,
-        point: usize,
-        contact: usize,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<ContactSummary> {
-        let kept = self.check_contact(point, contact)?;
-        self.with_orbit(point, contact, interrupt, |orbit, length| {
-            let account = orbit.account(interrupt)?;
-            let ranges = orbit.ranges(interrupt)?;
-            let mut summary = ContactSummary {
-                directions: orbit.directions(),
-                work: account.work * length * length,
-                slip_share: account.slip,
-                open_share: account.open,
-                ..ContactSummary::default()
-            };
-            for (k, (low, high)) in ranges.iter().take(SUMMARISED).enumerate() {
-                (summary.motion_min[k], summary.motion_max[k]) = (low * length, high * length);
-                summary.half_range[k] = 0.5 * (high - low) * length;
-            }
-            // The load is largest where the motion of side a against side b is smallest.
-            let (low, high) = kept.normal_direction().map_or((0.0, 0.0), |k| ranges[k]);
-            let at_speed = self.contact_at_speed(point, contact);
-            let kept = at_speed.as_ref().unwrap_or(kept);
-            summary.load_min = kept.normal_load(high * length);
-            summary.load_max = kept.normal_load(low * length);
-            Ok(summary)
-        })
-    }
-
-    /// A contact under its load at the frequency of a point; `None` where the load does not depend on the frequency.
-    fn contact_at_speed(&self, point: usize, contact: usize) -> Option<Contact> {
-        let laws = self.condensed_at(point).laws();
-        let found = laws
-            .binary_search_by_key(&contact, |assembled| assembled.contact)
-            .ok()?;
-        let load = laws[found].load.as_ref()?;
-        Some(load.contact_at(self.table.omega[point]))
-    }
-
-    /// Number of relative motions of a contact in [`Self::contact_loop`].
-    #[must_use]
-    pub fn contact_directions(&self, contact: usize) -> Option<usize> {
-        let kept = self.resolutions[0]
-            .condensed
-            .contact_classes()
-            .contacts()
-            .get(contact)?;
-        Some(kept.directions())
-    }
-
-    fn check_point(&self, point: usize) -> Result<()> {
-        self.carried_of(point).map(|_| ())
-    }
-
-    fn check_contact(&self, point: usize, contact: usize) -> Result<&Contact> {
-        self.check_point(point)?;
-        match self.resolutions[0].condensed.contact_classes().contacts().get(contact) {
-            Some(kept) => Ok(kept),
-            None => fail!(Index, "contact = {contact}, needs 0 .. {}", self.contacts()),
-        }
-    }
-
-    /// Calls `use_it` with a contact over the period and the unit of its lengths.
-    fn with_orbit<T>(
-        &self,
-        point: usize,
-        contact: usize,
-        interrupt: &Interrupt<'_>,
-        use_it: impl FnOnce(&Orbit<'_>, f64) -> Result<T>,
-    ) -> Result<T> {
-        let condensed = self.condensed_at(point);
-        let contact_classes = condensed.contact_classes();
-        if let Some(at) = contact_classes.linear(contact) {
-            let kept = &contact_classes.contacts()[contact];
-            let row = |i: usize, k: usize| &condensed.blocks()[i].motions.linear_rows[at + k];
-            let (set, packed) = self.recover(point, kept.directions(), |i, k, x| Ok(row(i, k).along(x)), interrupt)?;
-            let orbit = Orbit::spring(&set, &packed, kept.directions(), kept.stiffness_as_spring());
-            return use_it(&orbit, 1.0);
-        }
-        let laws = condensed.laws();
-        let Ok(found) = laws.binary_search_by_key(&contact, |assembled| assembled.contact) else {
-            return fail!(Internal, "contact {contact} has no law");
+/// Summary of a contact as [`Branch::contact_summary`], and the caller may stop it.
+pub(crate) fn contact_summary_with(
+    branch: &Branch,
+    point: usize,
+    contact: usize,
+    interrupt: &Interrupt<'_>,
+) -> Result<ContactSummary> {
+    let kept = check_contact(branch, point, contact)?;
+    with_orbit(branch, point, contact, interrupt, |orbit, length| {
+        let account = orbit.account(interrupt)?;
+        let ranges = orbit.ranges(interrupt)?;
+        let mut summary = ContactSummary {
+            directions: orbit.directions(),
+            work: account.work * length * length,
+            slip_share: account.slip,
+            open_share: account.open,
+            ..ContactSummary::default()
         };
-        let assembled = &laws[found];
-        let set = condensed.set();
-        let m = set.packed_len();
-        let mut motion = Vec::new();
-        for c in &assembled.coordinates {
-            let all = self.motion_at(point).unwrap_or(&[]);
-            try_extend(&mut motion, &all[c * m..(c + 1) * m], "the motion of a contact")?;
+        for (k, (low, high)) in ranges.iter().take(SUMMARISED).enumerate() {
+            (summary.motion_min[k], summary.motion_max[k]) = (low * length, high * length);
+            summary.half_range[k] = 0.5 * (high - low) * length;
         }
-        let omega = self.table.omega[point];
-        let law = match &assembled.load {
-            None => Arc::clone(&assembled.law),
-            Some(load) => load.contact_at(omega).law(condensed.length())?,
-        };
-        let mut orbit = Orbit::new(set, &motion, &*law, omega, self.samples_at(point));
-        let mut actual = Vec::new();
-        if let [c] = assembled.coordinates[..]
-            && condensed.is_exchanged(c)
-        {
-            let all = self.relative_motion_at(point, interrupt)?;
-            try_extend(&mut actual, &all[c * m..(c + 1) * m], "the motion of a contact")?;
-            orbit = orbit.moving(&actual);
-        }
-        use_it(&orbit, condensed.length())
-    }
+        // The load is largest where the motion of side a against side b is smallest.
+        let (low, high) = kept.normal_direction().map_or((0.0, 0.0), |k| ranges[k]);
+        let at_speed = contact_at_speed(branch, point, contact);
+        let kept = at_speed.as_ref().unwrap_or(kept);
+        summary.load_min = kept.normal_load(high * length);
+        summary.load_max = kept.normal_load(low * length);
+        Ok(summary)
+    })
+}
 
-    /// Packed harmonics of `signals` signals, one after the other. `of` computes the k-th signal from the i-th
-    /// carried harmonic of all degrees of freedom, in the caller's unit. The set has all harmonics, because those
-    /// of linear models have no common step.
-    fn recover(
-        &self,
-        point: usize,
-        signals: usize,
-        of: impl Fn(usize, usize, &[Complex64]) -> Result<Complex64>,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<(HarmonicSet, Vec<f64>)> {
-        const CONTEXT: &str = "the harmonics";
-        let carried = self.carried_of(point)?;
-        let highest = carried.last().copied().unwrap_or(0);
-        let set = HarmonicSet::all(highest)?;
-        let m = set.packed_len();
-        let mut packed = try_vec(signals.saturating_mul(m), 0.0, CONTEXT)?;
-        let ndof = self.condensed_at(point).ndof();
-        let mut x = try_vec(ndof, Complex64::ZERO, CONTEXT)?;
-        let mut recovery = Recovery::at(self, point, interrupt)?;
-        for (i, &h) in carried.iter().enumerate() {
-            interrupt.part(Phase::Results, i, carried.len())?;
-            recovery.coordinates(i, &mut x)?;
-            for (k, signal) in packed.chunks_exact_mut(m).enumerate() {
-                set.set(signal, h, of(i, k, &x)?);
-            }
-        }
-        Ok((set, packed))
+/// A contact under its load at the frequency of a point; `None` where the load does not depend on the frequency.
+fn contact_at_speed(branch: &Branch, point: usize, contact: usize) -> Option<Contact> {
+    let laws = branch.condensed_at(point).laws();
+    let found = laws
+        .binary_search_by_key(&contact, |assembled| assembled.contact)
+        .ok()?;
+    let load = laws[found].load.as_ref()?;
+    Some(load.contact_at(branch.table.omega[point]))
+}
+
+/// Number of relative motions of a contact in [`Branch::contact_loop`].
+pub(crate) fn contact_directions(branch: &Branch, contact: usize) -> Option<usize> {
+    let kept = branch.resolutions[0]
+        .condensed
+        .contact_classes()
+        .contacts()
+        .get(contact)?;
+    Some(kept.directions())
+}
+
+fn check_point(branch: &Branch, point: usize) -> Result<()> {
+    branch.carried_of(point).map(|_| ())
+}
+
+fn check_contact(branch: &Branch, point: usize, contact: usize) -> Result<&Contact> {
+    check_point(branch, point)?;
+    match branch.resolutions[0]
+        .condensed
+        .contact_classes()
+        .contacts()
+        .get(contact)
+    {
+        Some(kept) => Ok(kept),
+        None => fail!(Index, "contact = {contact}, needs 0 .. {}", branch.contacts()),
     }
+}
+
+/// Calls `use_it` with a contact over the period and the unit of its lengths.
+fn with_orbit<T>(
+    branch: &Branch,
+    point: usize,
+    contact: usize,
+    interrupt: &Interrupt<'_>,
+    use_it: impl FnOnce(&Orbit<'_>, f64) -> Result<T>,
+) -> Result<T> {
+    let condensed = branch.condensed_at(point);
+    let contact_classes = condensed.contact_classes();
+    if let Some(at) = contact_classes.linear(contact) {
+        let kept = &contact_classes.contacts()[contact];
+        let row = |i: usize, k: usize| &condensed.blocks()[i].motions.linear_rows[at + k];
+        let (set, packed) = recover(
+            branch,
+            point,
+            kept.directions(),
+            |i, k, x| Ok(row(i, k).along(x)),
+            interrupt,
+        )?;
+        let orbit = Orbit::spring(&set, &packed, kept.directions(), kept.stiffness_as_spring());
+        return use_it(&orbit, 1.0);
+    }
+    let laws = condensed.laws();
+    let Ok(found) = laws.binary_search_by_key(&contact, |assembled| assembled.contact) else {
+        return fail!(Internal, "contact {contact} has no law");
+    };
+    let assembled = &laws[found];
+    let set = condensed.set();
+    let m = set.packed_len();
+    let mut motion = Vec::new();
+    for c in &assembled.coordinates {
+        let all = branch.motion_at(point).unwrap_or(&[]);
+        try_extend(&mut motion, &all[c * m..(c + 1) * m], "the motion of a contact")?;
+    }
+    let omega = branch.table.omega[point];
+    let law = match &assembled.load {
+        None => Arc::clone(&assembled.law),
+        Some(load) => load.contact_at(omega).law(condensed.length())?,
+    };
+    let mut orbit = Orbit::new(set, &motion, &*law, omega, branch.samples_at(point));
+    let mut actual = Vec::new();
+    if let [c] = assembled.coordinates[..]
+        && condensed.is_exchanged(c)
+    {
+        let all = recovery::relative_motion_at(branch, point, interrupt)?;
+        try_extend(&mut actual, &all[c * m..(c + 1) * m], "the motion of a contact")?;
+        orbit = orbit.moving(&actual);
+    }
+    use_it(&orbit, condensed.length())
+}
+
+/// Packed harmonics of `signals` signals, one after the other. `of` computes the k-th signal from the i-th
+/// carried harmonic of all degrees of freedom, in the caller's unit. The set has all harmonics, because those
+/// of linear models have no common step.
+fn recover(
+    branch: &Branch,
+    point: usize,
+    signals: usize,
+    of: impl Fn(usize, usize, &[Complex64]) -> Result<Complex64>,
+    interrupt: &Interrupt<'_>,
+) -> Result<(HarmonicSet, Vec<f64>)> {
+    const CONTEXT: &str = "the harmonics";
+    let carried = branch.carried_of(point)?;
+    let highest = carried.last().copied().unwrap_or(0);
+    let set = HarmonicSet::all(highest)?;
+    let m = set.packed_len();
+    let mut packed = try_vec(signals.saturating_mul(m), 0.0, CONTEXT)?;
+    let ndof = branch.condensed_at(point).ndof();
+    let mut x = try_vec(ndof, Complex64::ZERO, CONTEXT)?;
+    let mut recovery = Recovery::at(branch, point, interrupt)?;
+    for (i, &h) in carried.iter().enumerate() {
+        interrupt.part(Phase::Results, i, carried.len())?;
+        recovery.coordinates(i, &mut x)?;
+        for (k, signal) in packed.chunks_exact_mut(m).enumerate() {
+            set.set(signal, h, of(i, k, &x)?);
+        }
+    }
+    Ok((set, packed))
 }
 
 fn check_times(n: usize) -> Result<()> {

@@ -1,15 +1,20 @@
 //! Storing the points of a branch.
 
+use crate::condense::blocks::reduction;
 use crate::condense::{Condensed, Reduction, Resolution};
 use crate::error::{Error, Result, Status, try_push};
 use crate::model::Model;
-use crate::options::SolverOptions;
+use crate::options::{Response, SolverOptions};
 use crate::results::stored::branch::{Branch, Family};
 use crate::results::stored::branch_parts::{Place, PointErrors, PointStability, PointTable, Run, SpecialLists};
+use crate::results::stored::freedom_of_points::FreedomOfPoints;
 use crate::results::stored::mode_branch::ModeData;
+use crate::results::stored::origin::Origin;
+use crate::results::stored::parameter_branch::ParameterData;
 use crate::results::stored::special::Special;
-use crate::results::verdicts::verdict::{Bifurcation, BifurcationKind, Located};
-use crate::results::watched::response_series::SeenWithError;
+use crate::results::verdicts::verdict::{Bifurcation, BifurcationKind, Located, Verdict};
+use crate::results::watched::response_series::{ResponseSeries, SeenWithError};
+use crate::results::{Descent, Searched};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -120,7 +125,7 @@ impl Branch {
             harmonics_carried: 0,
             mean_carried: false,
             even_removed: false,
-            ..condensed.reduction_with(model, options, 0)
+            ..reduction::reduction_with(&condensed, model, options, 0)
         };
         let resolution = Resolution {
             condensed: Arc::new(condensed),
@@ -319,7 +324,7 @@ impl Branch {
             .max_by_key(|resolution| resolution.condensed.unknowns());
         if let Some(largest) = largest {
             let held = self.run.reduction.held_by_contacts;
-            let reduction = largest.condensed.reduction_with(model, options, held);
+            let reduction = reduction::reduction_with(&largest.condensed, model, options, held);
             self.set_reduction(reduction);
         }
     }
@@ -350,5 +355,104 @@ impl Branch {
         }
         try_push(&mut self.resolutions, resolution.clone(), "the branch")?;
         Ok(self.resolutions.len() - 1)
+    }
+
+    pub(crate) fn set_estimates(&mut self, estimates: usize) {
+        self.run.estimates = estimates;
+    }
+
+    pub(crate) fn mode_data_mut(&mut self) -> Option<&mut ModeData> {
+        self.mode.as_mut()
+    }
+
+    pub(crate) fn set_parameter_data(&mut self, data: ParameterData) {
+        self.parameter = Some(data);
+    }
+
+    /// Stores the freedom of all points; `stopped` if the caller stopped its computation.
+    pub(crate) fn set_freedom(&mut self, freedom: Box<FreedomOfPoints>, stopped: bool) {
+        self.freedom = Some(freedom);
+        if stopped && self.run.status == Status::Ok {
+            self.run.status = Status::StoppedByCaller;
+        }
+    }
+
+    pub(crate) fn set_searched(&mut self, searched: Searched) {
+        self.family.searched = Some(searched);
+    }
+
+    /// The children of this branch, writable.
+    pub(crate) fn children_mut(&mut self) -> &mut [Self] {
+        &mut self.family.children
+    }
+
+    /// The children, taken out of the branch.
+    pub(crate) fn take_children(&mut self) -> Vec<Self> {
+        core::mem::take(&mut self.family.children)
+    }
+
+    pub(crate) fn set_descent(&mut self, descent: Descent) {
+        self.family.descent = Some(descent);
+    }
+
+    pub(crate) fn push_child(&mut self, child: Self) -> Result<()> {
+        try_push(&mut self.family.children, child, "the branches that branch off")
+    }
+
+    /// Notes the model of the branch; `on_wave`: the branch has the wave of the model.
+    pub(crate) fn set_origin(&mut self, model: &Model, on_wave: bool) {
+        self.family.origin = Some(Origin {
+            model: model.fingerprint(),
+            on_wave,
+        });
+    }
+
+    /// Completes the fields of stability by NaN for points without it, including those beside the curve.
+    pub(crate) fn complete_stability(&mut self) -> Result<()> {
+        if !self.run.tells_stability {
+            return Ok(());
+        }
+        let stored = self.table.omega.len();
+        for numbers in [
+            &mut self.stability.floquet_radius,
+            &mut self.stability.unstable_directions,
+        ] {
+            numbers
+                .try_reserve(stored.saturating_sub(numbers.len()))
+                .map_err(|_| Error::out_of_memory("the stability of the points"))?;
+            numbers.resize(stored, f64::NAN);
+        }
+        Ok(())
+    }
+
+    /// Removes the bifurcations at these points from the list.
+    pub(crate) fn leave_bifurcations(&mut self, points: &[usize]) {
+        self.special
+            .bifurcations
+            .retain(|located| !points.contains(&located.bifurcation.point));
+    }
+
+    /// Notes that stability was requested.
+    pub(crate) fn tell_stability(&mut self) {
+        self.run.tells_stability = true;
+    }
+
+    /// Stores the stability of the next point of the curve.
+    pub(crate) fn push_verdict(&mut self, verdict: &Verdict) -> Result<()> {
+        const CONTEXT: &str = "the stability of the points";
+        let count = verdict.unstable.map_or(f64::NAN, |count| count as f64);
+        try_push(&mut self.stability.floquet_radius, verdict.radius, CONTEXT)?;
+        try_push(&mut self.stability.unstable_directions, count, CONTEXT)
+    }
+
+    /// Notes the responses before the first point; `observed`: the first one is the amplitude that the branch
+    /// observes anyway.
+    pub(crate) fn watch(&mut self, (responses, together): (&[Response<'_>], bool), observed: bool) -> Result<()> {
+        self.run.together = together;
+        for (i, response) in responses.iter().enumerate() {
+            let series = ResponseSeries::new(response, self.run.response_dof, observed && i == 0)?;
+            try_push(&mut self.responses, series, "the responses")?;
+        }
+        Ok(())
     }
 }

@@ -20,22 +20,17 @@ pub struct LimitCycle {
     pub slope: f64,
 }
 
-impl Branch {
-    /// The limit cycles on a nonlinear mode, refined on the solution, in the order of the branch.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
-    pub fn limit_cycles(&self) -> Result<Vec<LimitCycle>> {
-        let mut found = Vec::new();
-        for &(special, slope) in &self.special.limit_cycles {
-            let cycle = LimitCycle {
-                point: special.point,
-                omega: special.omega,
-                log10_amplitude: self.mode_at(special.point).map_or(f64::NAN, |m| m.log10_amplitude),
-                slope,
-            };
-            try_push(&mut found, cycle, "the limit cycles")?;
-        }
-        Ok(found)
+/// The limit cycles on a nonlinear mode, refined on the solution, in the order of the branch.
+pub(crate) fn limit_cycles(branch: &Branch) -> Result<Vec<LimitCycle>> {
+    let mut found = Vec::new();
+    for &(special, slope) in &branch.special.limit_cycles {
+        let cycle = LimitCycle {
+            point: special.point,
+            omega: special.omega,
+            log10_amplitude: branch.mode_at(special.point).map_or(f64::NAN, |m| m.log10_amplitude),
+            slope,
+        };
+        try_push(&mut found, cycle, "the limit cycles")?;
     }
+    Ok(found)
 }

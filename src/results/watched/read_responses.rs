@@ -54,61 +54,46 @@ impl<'a> OnModel<'a> {
     }
 }
 
-impl Branch {
-    /// Reads responses at all stored points, whether or not the branch was computed with them: for a nonlinear mode,
-    /// a result over a parameter, or further gauges of a forced response. They have no peaks and no errors. A
-    /// response without degrees of freedom reads the response degree of freedom.
-    ///
-    /// # Errors
-    /// Those of the responses, naming their numbers; those of [`Self::harmonics_at`].
-    pub fn read_responses(&self, responses: &[Response<'_>]) -> Result<Vec<ResponseSeries>> {
-        self.read_responses_with(responses, &Interrupt::none())
+/// Reads responses as [`Branch::read_responses`], and the caller may stop it.
+pub(crate) fn read_responses_with(
+    branch: &Branch,
+    responses: &[Response<'_>],
+    interrupt: &Interrupt<'_>,
+) -> Result<Vec<ResponseSeries>> {
+    check_responses(responses, branch.ndof(), branch.reduction().sectors)?;
+    let mut found = Vec::new();
+    for response in responses {
+        let series = ResponseSeries::new(response, branch.run.response_dof, false)?;
+        try_push(&mut found, series, CONTEXT)?;
     }
-
-    /// Reads responses as [`Self::read_responses`], and the caller may stop it.
-    ///
-    /// # Errors
-    /// As [`Self::read_responses`]; `StoppedByCaller`.
-    pub fn read_responses_with(
-        &self,
-        responses: &[Response<'_>],
-        interrupt: &Interrupt<'_>,
-    ) -> Result<Vec<ResponseSeries>> {
-        check_responses(responses, self.ndof(), self.reduction().sectors)?;
-        let mut found = Vec::new();
-        for response in responses {
-            let series = ResponseSeries::new(response, self.run.response_dof, false)?;
-            try_push(&mut found, series, CONTEXT)?;
-        }
-        if responses.is_empty() || self.stored() == 0 {
-            return Ok(found);
-        }
-        let mut recovery = Recovery::at(self, 0, interrupt)?;
-        let mut model = OnModel::new(self.condensed_at(0), responses, self.run.response_dof)?;
-        for (point, &omega) in self.table.omega.iter().enumerate() {
-            interrupt.part(Phase::Results, point, self.stored())?;
-            recovery.go_to(self, point)?;
-            let condensed = self.condensed_at(point);
-            if !core::ptr::eq(condensed, model.condensed) {
-                model = OnModel::new(condensed, responses, self.run.response_dof)?;
-            }
-            model.fill(&mut recovery, omega)?;
-            let set = condensed.set();
-            let signals = model.signals.chunks_exact(set.packed_len());
-            for ((series, response), signal) in found.iter_mut().zip(responses).zip(signals) {
-                let mut reading = model.reader.read(set, response.measure, signal, interrupt)?;
-                reading.instant /= set.base().max(1) as f64;
-                let seen = Seen {
-                    reading,
-                    slope: f64::NAN,
-                    complex_slope: Complex64::ZERO,
-                    instants: [f64::NAN; 2],
-                    instant_rates: [f64::NAN; 2],
-                };
-                // The recovered motion has the caller's unit.
-                series.push(&SeenWithError { seen, error: f64::NAN }, 1.0)?;
-            }
-        }
-        Ok(found)
+    if responses.is_empty() || branch.stored() == 0 {
+        return Ok(found);
     }
+    let mut recovery = Recovery::at(branch, 0, interrupt)?;
+    let mut model = OnModel::new(branch.condensed_at(0), responses, branch.run.response_dof)?;
+    for (point, &omega) in branch.table.omega.iter().enumerate() {
+        interrupt.part(Phase::Results, point, branch.stored())?;
+        recovery.go_to(branch, point)?;
+        let condensed = branch.condensed_at(point);
+        if !core::ptr::eq(condensed, model.condensed) {
+            model = OnModel::new(condensed, responses, branch.run.response_dof)?;
+        }
+        model.fill(&mut recovery, omega)?;
+        let set = condensed.set();
+        let signals = model.signals.chunks_exact(set.packed_len());
+        for ((series, response), signal) in found.iter_mut().zip(responses).zip(signals) {
+            let mut reading = model.reader.read(set, response.measure, signal, interrupt)?;
+            reading.instant /= set.base().max(1) as f64;
+            let seen = Seen {
+                reading,
+                slope: f64::NAN,
+                complex_slope: Complex64::ZERO,
+                instants: [f64::NAN; 2],
+                instant_rates: [f64::NAN; 2],
+            };
+            // The recovered motion has the caller's unit.
+            series.push(&SeenWithError { seen, error: f64::NAN }, 1.0)?;
+        }
+    }
+    Ok(found)
 }

@@ -10,7 +10,7 @@ use crate::sensitivity::Parameter;
 use crate::studies::fit::fit_data::FitData;
 use crate::studies::fit::fit_options::FitOptions;
 use crate::studies::fit::fit_result::sizes;
-use crate::studies::fit::fit_search::{Search, State};
+use crate::studies::fit::fit_search::{FitSearch, State};
 use crate::studies::fit::fit_unknowns::{Unknown, Unknowns};
 use crate::studies::fit::preparation::{check, predictor};
 use crate::studies::fit::searches::{Searched, searched};
@@ -101,7 +101,7 @@ pub fn fit_profile(
     interrupt.phase(Phase::Results, 0.0)?;
     let own = model.separate_clone()?;
     let predictor = predictor(&own, (parameters, &all.scopes), data, solver, &interrupt);
-    let search = Search {
+    let search = FitSearch {
         predictor: &predictor,
         unknowns: &all,
         options,
@@ -138,7 +138,7 @@ pub fn fit_profile(
         let fixed = of.held(unknowns, (&near, of.values[i]))?;
         let held = Unknowns::new(model, (parameters, &fixed), data.len())
             .map_err(|e| e.at(format_args!("values[{i}] = {}", of.values[i])))?;
-        let search = Search {
+        let search = FitSearch {
             unknowns: &held,
             ..search
         };
@@ -177,7 +177,7 @@ enum Least {
 }
 
 /// The state of least loss over the free unknowns; where none is free, the state at their values.
-fn least(search: &Search<'_>, hooks: &mut Hooks<'_>) -> Result<Least> {
+fn least(search: &FitSearch<'_>, hooks: &mut Hooks<'_>) -> Result<Least> {
     if search.unknowns.free.is_empty() {
         let state = search.at(Vec::new())?;
         return Ok(state.map_or(Least::NoSolution, |state| Least::Found(Box::new(state))));

@@ -3,7 +3,7 @@
 use crate::error::{Result, Status, try_copy, try_vec};
 use crate::model::Model;
 use crate::studies::fit::fit_data::FitData;
-use crate::studies::fit::fit_search::{Found, Search, State};
+use crate::studies::fit::fit_search::{FitSearch, Found, State};
 use crate::studies::fit::identifiability::condition;
 use crate::studies::fit::marquardt_step::inverse;
 use crate::studies::fit::suspected_units::Suspicion;
@@ -96,7 +96,7 @@ pub(super) struct Ended {
 }
 
 /// Number of data; and number of data and priors minus number of free unknowns.
-pub(super) fn sizes(search: &Search<'_>) -> (usize, i64) {
+pub(super) fn sizes(search: &FitSearch<'_>) -> (usize, i64) {
     let of_set = |set: &FitData<'_>| {
         let counted = |i| set.weights(i).iter().filter(|w| **w > 0.0).count();
         (0..set.x.len()).map(counted).sum::<usize>()
@@ -108,7 +108,7 @@ pub(super) fn sizes(search: &Search<'_>) -> (usize, i64) {
 }
 
 /// Whether a state explains the data poorly.
-pub(super) fn is_poor(search: &Search<'_>, state: &State) -> bool {
+pub(super) fn is_poor(search: &FitSearch<'_>, state: &State) -> bool {
     state.cost > FIT_POOR * sizes(search).1.max(1) as f64
 }
 
@@ -116,8 +116,8 @@ pub(super) fn is_poor(search: &Search<'_>, state: &State) -> bool {
 ///
 /// # Errors
 /// `Singular` where the data do not tell the unknowns; those of the model; `OutOfMemory`, `StoppedByCaller`.
-pub(super) fn result(search: &Search<'_>, ended: Ended, suspicion: Suspicion) -> Result<Fit> {
-    let Search {
+pub(super) fn result(search: &FitSearch<'_>, ended: Ended, suspicion: Suspicion) -> Result<Fit> {
+    let FitSearch {
         predictor,
         unknowns,
         options,

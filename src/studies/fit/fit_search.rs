@@ -55,13 +55,13 @@ pub(super) struct Found {
     pub converged: bool,
 }
 
-pub(super) struct Search<'a> {
+pub(super) struct FitSearch<'a> {
     pub predictor: &'a Predictor<'a>,
     pub unknowns: &'a Unknowns,
     pub options: &'a FitOptions,
 }
 
-impl Search<'_> {
+impl FitSearch<'_> {
     /// The state at given values of the free unknowns; `None` where the model has no solution for some datum.
     ///
     /// # Errors

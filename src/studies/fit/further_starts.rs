@@ -3,7 +3,7 @@
 use crate::contact::forms::constants::Constant;
 use crate::error::{Result, try_copy, try_push};
 use crate::sensitivity::Parameter;
-use crate::studies::fit::fit_search::{Search, State};
+use crate::studies::fit::fit_search::{FitSearch, State};
 
 const CONTEXT: &str = "further starts of a fit";
 
@@ -19,7 +19,7 @@ const FIT_SPREAD: f64 = 1.15;
 ///
 /// # Errors
 /// Those of the predictor.
-pub(super) fn further_starts(search: &Search<'_>, first: &State, poor: bool) -> Result<Vec<State>> {
+pub(super) fn further_starts(search: &FitSearch<'_>, first: &State, poor: bool) -> Result<Vec<State>> {
     let parameters = search.predictor.parameters;
     let free = &search.unknowns.free;
     let mut tried: Vec<State> = Vec::new();

@@ -4,7 +4,7 @@ use crate::error::{Result, try_push};
 use crate::hooks::{Hooks, Progress};
 use crate::studies::fit::fit_options::{FitOptions, Loss};
 use crate::studies::fit::fit_result::{Ended, Fit, is_poor};
-use crate::studies::fit::fit_search::{Found, Search, State};
+use crate::studies::fit::fit_search::{FitSearch, Found, State};
 use crate::studies::fit::further_starts::further_starts;
 use crate::studies::fit::thinned_data::{self, Start};
 
@@ -33,13 +33,13 @@ pub(super) enum Searched {
 ///
 /// # Errors
 /// Those of the predictor.
-pub(super) fn searched(search: &Search<'_>, hooks: &mut Hooks<'_>) -> Result<Searched> {
+pub(super) fn searched(search: &FitSearch<'_>, hooks: &mut Hooks<'_>) -> Result<Searched> {
     let mut z = Vec::new();
     for free in &search.unknowns.free {
         try_push(&mut z, free.start, CONTEXT)?;
     }
     let mut stopped = false;
-    let explains = |search: &Search<'_>, state: &State| !is_poor(search, state) && !unseen(state);
+    let explains = |search: &FitSearch<'_>, state: &State| !is_poor(search, state) && !unseen(state);
     let mut told = |i: usize, state: &State| report(hooks, (i, state), &mut stopped);
     match thinned_data::start(search, &z, explains, &mut told)? {
         Start::Given => {}
@@ -54,7 +54,7 @@ pub(super) fn searched(search: &Search<'_>, hooks: &mut Hooks<'_>) -> Result<Sea
 }
 
 /// The best end over the searches from all starts.
-fn best_of(search: &Search<'_>, first: &State, (hooks, mut stopped): (&mut Hooks<'_>, bool)) -> Result<Ended> {
+fn best_of(search: &FitSearch<'_>, first: &State, (hooks, mut stopped): (&mut Hooks<'_>, bool)) -> Result<Ended> {
     let mut starts = 1;
     let mut best = search.from(first.clone(), &mut |i, state| {
         stopped || report(hooks, (i, state), &mut stopped)
@@ -91,12 +91,16 @@ fn best_of(search: &Search<'_>, first: &State, (hooks, mut stopped): (&mut Hooks
 /// Searches from where a search with a robust loss ends. Beyond a fold of the model, the solution nearest to a datum
 /// lies on another branch. Such data pull least squares away from the truth; to a robust loss they are outliers until
 /// the fold has moved.
-fn by_robust_loss(search: &Search<'_>, first: &State, report: &mut dyn FnMut(usize, &State) -> bool) -> Result<Found> {
+fn by_robust_loss(
+    search: &FitSearch<'_>,
+    first: &State,
+    report: &mut dyn FnMut(usize, &State) -> bool,
+) -> Result<Found> {
     let options = FitOptions {
         loss: Loss::Huber(FIT_ROBUST),
         ..*search.options
     };
-    let robust = Search {
+    let robust = FitSearch {
         options: &options,
         ..*search
     };

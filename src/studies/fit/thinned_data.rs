@@ -4,7 +4,7 @@ use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::studies::fit::fit_data::{DataKind, FitData};
 use crate::studies::fit::fit_options::{FIT_THINNED_FROM, FitOptions};
 use crate::studies::fit::fit_result::{Ended, Fit, result};
-use crate::studies::fit::fit_search::{Search, State};
+use crate::studies::fit::fit_search::{FitSearch, State};
 use crate::studies::fit::predicted_data::Predictor;
 use crate::studies::fit::suspected_units::Suspicion;
 use num_complex::Complex64;
@@ -75,9 +75,9 @@ pub(super) enum Start {
 /// # Errors
 /// Those of the predictor, and of a result.
 pub(super) fn start(
-    search: &Search<'_>,
+    search: &FitSearch<'_>,
     z: &[f64],
-    explains: impl Fn(&Search<'_>, &State) -> bool,
+    explains: impl Fn(&FitSearch<'_>, &State) -> bool,
     report: &mut dyn FnMut(usize, &State) -> bool,
 ) -> Result<Start> {
     let predictor = search.predictor;
@@ -115,7 +115,7 @@ pub(super) fn start(
         step: search.options.step.max(FIT_THINNED_STEP),
         ..*search.options
     };
-    let thinned = Search {
+    let thinned = FitSearch {
         predictor: &predictor,
         unknowns: search.unknowns,
         options: &options,

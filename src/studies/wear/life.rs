@@ -138,7 +138,7 @@ pub fn life(model: &Model, solver: &SolverOptions, options: &LifeOptions<'_>, ho
         worn: states.at(&depths, None, hooks)?,
         depths,
     };
-    let mut walk = Walk {
+    let mut walk = LifeWalk {
         found: Life {
             points: Vec::new(),
             events: Vec::new(),
@@ -172,13 +172,13 @@ pub fn life(model: &Model, solver: &SolverOptions, options: &LifeOptions<'_>, ho
     Ok(walk.found)
 }
 
-struct Walk<'a> {
+struct LifeWalk<'a> {
     states: WornStates<'a>,
     options: &'a LifeOptions<'a>,
     found: Life,
 }
 
-impl Walk<'_> {
+impl LifeWalk<'_> {
     fn run(&mut self, mut at: LifeState, hooks: &mut Hooks<'_>) -> Result<()> {
         let end = self.options.cycles.last().copied().unwrap_or(0.0);
         self.found.depths = try_copy(&at.depths, CONTEXT)?;

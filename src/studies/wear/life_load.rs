@@ -69,7 +69,7 @@ pub fn best_load_for_life(
         return fail!(Argument, "factors {low} .. {high}, needs 0 < low < high, both finite");
     }
     options.check(model)?;
-    let mut search = Search {
+    let mut search = LoadSearch {
         model,
         solver: *solver,
         options,
@@ -121,14 +121,14 @@ fn without_life(e: Error, factor: f64) -> Error {
     e
 }
 
-struct Search<'a> {
+struct LoadSearch<'a> {
     model: &'a Model,
     solver: SolverOptions,
     options: &'a LifeOptions<'a>,
     lives: usize,
 }
 
-impl Search<'_> {
+impl LoadSearch<'_> {
     fn with(&mut self, factor: f64, hooks: &mut Hooks<'_>) -> Result<Tried> {
         let mut model = self.model.separate_clone()?;
         for wear in self.options.wear {

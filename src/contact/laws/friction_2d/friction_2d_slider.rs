@@ -95,7 +95,7 @@ impl Phase {
 }
 
 /// A walk that writes pieces.
-pub(crate) struct Walk<'a> {
+pub(crate) struct SliderWalk<'a> {
     pub(crate) play: Play,
     pub(crate) set: &'a HarmonicSet,
     /// Packed x and y.
@@ -111,7 +111,7 @@ struct Instant {
     u: [f64; 2],
 }
 
-impl Walk<'_> {
+impl SliderWalk<'_> {
     /// Phase of the slider from the time r of closing on, where s = kt·x(r). The bounds open by
     /// q±′ = kt·x′ ∓ μN′ with N′ = −kn·y′; it sticks if neither comes towards it.
     pub(crate) fn closing(&self, r: f64) -> Phase {

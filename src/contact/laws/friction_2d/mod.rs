@@ -31,7 +31,7 @@ use crate::contact::forms::linearisation::Range;
 use crate::contact::forms::onset::{Onset, slider_in_line};
 use crate::contact::forms::piece::{CoupledPiece, Piece};
 use crate::contact::laws::friction_2d::friction_2d_events::Slider;
-use crate::contact::laws::friction_2d::friction_2d_slider::{Phase, Play, Walk};
+use crate::contact::laws::friction_2d::friction_2d_slider::{Phase, Play, SliderWalk};
 use crate::contact::laws::unilateral::ScaledUnilateral;
 use crate::error::{Result, fail};
 use crate::fourier::HarmonicSet;
@@ -246,7 +246,7 @@ impl VaryingNormalLoad for ScaledFriction2d {
             let found = &mut bound.turning_points;
             find(&mut search.search, set, &bound.signal, found, interrupt)?;
         }
-        let mut walk = Walk {
+        let mut walk = SliderWalk {
             play: Play {
                 kt: self.kt,
                 kn: self.kn,
@@ -320,7 +320,7 @@ impl ScaledFriction2d {
 /// Pieces of a motion that never opens the contact. It slips where the bounds, each over the whole turn, leave
 /// no room for a slider at rest, and then the highest q₊ drags the slider: below it the slider was
 /// when the lowest q₋ had passed, and only q₊ has moved it up since.
-fn always_closed(walk: &mut Walk<'_>, interrupt: &Interrupt<'_>) -> Result<()> {
+fn always_closed(walk: &mut SliderWalk<'_>, interrupt: &Interrupt<'_>) -> Result<()> {
     let [upper, lower] = walk.bounds;
     let limit = walk.play.mu * walk.play.load;
     let highest = extreme(walk.set, upper, 1.0);
@@ -345,7 +345,7 @@ fn always_closed(walk: &mut Walk<'_>, interrupt: &Interrupt<'_>) -> Result<()> {
 }
 
 /// Walks every closed time from its closing on; the open times between them carry no force.
-fn closed_times(normal: &[Piece], walk: &mut Walk<'_>, interrupt: &Interrupt<'_>) -> Result<()> {
+fn closed_times(normal: &[Piece], walk: &mut SliderWalk<'_>, interrupt: &Interrupt<'_>) -> Result<()> {
     let closed_ends = [normal.first(), normal.last()].map(|p| p.is_some_and(Piece::is_closed));
     // The turn of the normal pieces begins anywhere; a closed time across its begin counts as one.
     let cut = closed_ends == [true, true] && normal.len() > 1;

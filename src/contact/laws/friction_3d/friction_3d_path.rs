@@ -64,7 +64,7 @@ pub(crate) enum Phase {
 }
 
 /// A path under way.
-pub(crate) struct Walk<'a> {
+pub(crate) struct PathWalk<'a> {
     path: &'a mut PlanePath,
     interrupt: &'a Interrupt<'a>,
     /// The largest limit.
@@ -77,7 +77,7 @@ pub(crate) struct Walk<'a> {
     length: f64,
 }
 
-impl<'a> Walk<'a> {
+impl<'a> PathWalk<'a> {
     pub fn new(path: &'a mut PlanePath, interrupt: &'a Interrupt<'a>) -> Self {
         let size = path.largest_limit();
         path.pieces.clear();

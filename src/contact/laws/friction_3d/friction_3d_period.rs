@@ -9,7 +9,7 @@ use crate::contact::forms::plane_path::{
     CONTEXT, Drift, Hold, PlaneForce, PlaneInstant, PlanePath, PlanePiece, Repetition,
 };
 use crate::contact::forms::radau::{RADAU_POINTS, RADAU_STAGES};
-use crate::contact::laws::friction_3d::friction_3d_path::{Phase, Walk};
+use crate::contact::laws::friction_3d::friction_3d_path::{PathWalk, Phase};
 use crate::contact::laws::friction_3d::friction_3d_stuck::{Disc, StuckSlider, stuck_slider};
 use crate::error::{Error, Result, Status, try_push};
 use crate::fourier::{jet, safe_newton};
@@ -67,7 +67,7 @@ pub(crate) fn find(normal: &[Piece], path: &mut PlanePath, interrupt: &Interrupt
         // The sides touch without load.
         path.repetition = Repetition::FromNothing;
         let turn = path.turn;
-        return Walk::new(path, interrupt).open(0.0, turn);
+        return PathWalk::new(path, interrupt).open(0.0, turn);
     }
     let settled = settle(path)?;
     if let Some(settled) = &settled
@@ -81,7 +81,7 @@ pub(crate) fn find(normal: &[Piece], path: &mut PlanePath, interrupt: &Interrupt
 
 /// Follows every closed time from its closing on.
 fn closed_times(normal: &[Piece], path: &mut PlanePath, interrupt: &Interrupt<'_>) -> Result<()> {
-    let mut walk = Walk::new(path, interrupt);
+    let mut walk = PathWalk::new(path, interrupt);
     let closed_ends = [normal.first(), normal.last()].map(|p| p.is_some_and(Piece::is_closed));
     // The turn of the normal pieces begins anywhere; a closed time across its begin counts as one.
     let cut = closed_ends == [true, true];
@@ -325,7 +325,7 @@ fn repeat(path: &mut PlanePath, settled: Option<&StuckSlider>, interrupt: &Inter
     let (mut plain, mut between) = (1_u32, 1_u32);
     for turn in 0..TURNS {
         interrupt.check()?;
-        let mut walk = Walk::new(path, interrupt);
+        let mut walk = PathWalk::new(path, interrupt);
         let begin = walk.begin(start, force);
         if let Phase::Slip { angle } = begin {
             let limit = walk.limit(start);

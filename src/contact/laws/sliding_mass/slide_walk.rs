@@ -24,7 +24,7 @@ impl Event {
 }
 
 /// A time on a motion of odd harmonics, and the turning point before it, counted on beyond half a turn.
-pub(super) struct Walk<'a> {
+pub(super) struct SlideWalk<'a> {
     pub(super) set: &'a HarmonicSet,
     pub(super) motion: &'a [f64],
     pub(super) extrema: &'a [Extremum],
@@ -33,7 +33,7 @@ pub(super) struct Walk<'a> {
     pub(super) late: f64,
 }
 
-impl Walk<'_> {
+impl SlideWalk<'_> {
     pub(super) fn x(&self, tau: f64) -> f64 {
         jet(self.set, self.motion, tau).x
     }

@@ -64,7 +64,7 @@ pub fn lowest(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Resu
     if place == Place::Further && n <= DENSE_IF_NEGATIVE {
         return all_of(k, m, count, interrupt);
     }
-    let mut search = Search {
+    let mut search = LanczosSearch {
         inverse,
         place,
         mass: m,
@@ -133,7 +133,7 @@ pub(super) fn within_at_once(
     // Not in the very middle, where a symmetric structure may have an eigenvalue.
     let shift = -(low + INSIDE * (high - low));
     let farthest = (high + shift).max(-shift - low);
-    let mut search = Search {
+    let mut search = LanczosSearch {
         inverse: Inverse::new(k, (shift, m), interrupt)?,
         place: Place::Inside,
         mass: m,
@@ -200,7 +200,7 @@ fn all_of(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Result<P
     Ok(pairs)
 }
 
-struct Search<'a> {
+struct LanczosSearch<'a> {
     inverse: Inverse,
     place: Place,
     mass: &'a Csc,
@@ -249,7 +249,7 @@ impl Run {
     }
 }
 
-impl Search<'_> {
+impl LanczosSearch<'_> {
     /// Finds the `count` largest eigenvalues of the operator at this shift; `open` shows whether some may be missing.
     fn all_lowest(&mut self, count: usize) -> Result<()> {
         for round in 0..=count {
