@@ -4,7 +4,6 @@
 use crate::condense::by_factors::flexibility::{Slopes, Table, Workspace};
 use crate::condense::by_modes::modal_rows::ModalRows;
 use crate::condense::by_modes::modal_table::{ModalTable, ModalWork};
-use crate::condense::by_modes::single_contact_lanes::SingleContactLanes;
 use crate::condense::{Condensed, FlexibilityWay};
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
@@ -70,8 +69,6 @@ pub struct ModalTables {
     tables: Vec<Option<ModalTable>>,
     /// Work space of the tables from modes: one for all, or one for each where slopes along a motion follow.
     work: Vec<ModalWork>,
-    /// Tables of all harmonics computed together, where each is from modes of a single contact.
-    lanes: Option<SingleContactLanes>,
     /// Whether the tables from modes have slopes.
     slopes: bool,
 }
@@ -134,7 +131,6 @@ impl FrequencyCache {
             workspace,
             current: tables,
             of_modes: ModalTables {
-                lanes: SingleContactLanes::new(&modal)?,
                 tables: modal,
                 work: modal_work,
                 slopes: true,
@@ -177,7 +173,6 @@ impl FrequencyCache {
     /// Uses the given tables from modes, without slopes, as exactly as an error estimate needs them.
     pub fn set_modes(&mut self, modal: Vec<Option<ModalTable>>) {
         self.of_modes.tables = modal;
-        self.of_modes.lanes = None;
         self.of_modes.slopes = false;
         self.tabulated = None;
     }
@@ -258,18 +253,6 @@ impl FrequencyCache {
         self.tabulated = None;
         if alone {
             return self.tabulate_excited(condensed, omega, interrupt);
-        }
-        if self.way == Way::Quick
-            && let Some(lanes) = &self.of_modes.lanes
-            && lanes.evaluate(omega, &mut self.current)
-        {
-            if condensed.has_exchanges() {
-                for (i, table) in self.current.iter_mut().enumerate() {
-                    condensed.exchange(i, omega, table);
-                }
-            }
-            self.tabulated = Some((omega, self.way, true));
-            return Ok(());
         }
         let may_lack = !condensed.has_exchanges();
         let keeps = self.of_modes.slopes && has_slopes_along(condensed);

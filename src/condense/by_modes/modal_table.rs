@@ -37,17 +37,6 @@ pub struct ModalTable {
     single: Option<SingleContact>,
 }
 
-/// The data of a table of one contact without springs.
-pub struct SinglePart<'a> {
-    pub contact: &'a SingleContact,
-    pub coefficients: &'a Coefficients,
-    pub number: f64,
-    /// Factors α and β of proportional damping αM + βK.
-    pub proportional: (f64, f64),
-    /// Loss factor η of the structure.
-    pub loss_factor: f64,
-}
-
 /// Work space for the tables of one structure, one after the other; made when a table first needs it.
 #[derive(Default)]
 pub struct ModalWork(pub(crate) Option<Box<Work>>);
@@ -135,20 +124,6 @@ impl ModalTable {
             unbalance,
             single,
             rows,
-        })
-    }
-
-    /// The data of the table where the harmonic has a single contact without springs, else `None`.
-    pub(crate) fn single(&self) -> Option<SinglePart<'_>> {
-        let Source::Modes(modes) = self.rows.source() else {
-            return None;
-        };
-        self.single.as_ref().map(|contact| SinglePart {
-            contact,
-            coefficients: &self.coefficients,
-            number: self.number,
-            proportional: modes.proportional,
-            loss_factor: modes.loss_factor,
         })
     }
 
