@@ -84,7 +84,6 @@ fn computed(
         .under_force(&load.force, damping, 2.0 * load.ratio * state.omega)?;
     let range = Range::new((omega - width).max(0.1 * omega), omega + width);
     let mut problem = HarmonicBalance::new(&forced, peak.response_dof, range, peak.samples, None, interrupt)?;
-    problem.set_factorised(true);
     let n = forced.unknowns();
     let settings = |range: Range| Settings {
         start: range.start,
