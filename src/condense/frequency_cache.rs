@@ -282,7 +282,7 @@ fn of_wave(
     let before = waves.len();
     let rows = ModalRows::shared((condensed, i, response), source.clone(), waves)?;
     let is_known = waves.len() == before;
-    let modal = ModalTable::new((condensed, i), rows, 0.0)?;
+    let modal = ModalTable::new((condensed, i), rows)?;
     let mut table = Table::new(condensed.coordinates())?;
     // The slope is made of the same modes: once shows that it is right.
     let mut checks_slope = true;
