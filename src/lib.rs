@@ -51,7 +51,7 @@
 #![deny(unsafe_code)]
 
 // The numerics below, under the paths that they have in this crate.
-use hbvib_numerics::{error, fourier, interrupt, linalg, shortage};
+use hbvib_numerics::{error, fourier, interrupt, linalg, roots, shortage};
 
 mod aft;
 mod analysis;

@@ -4,7 +4,6 @@
 use crate::condense::by_factors::flexibility::{Slopes, Table, Workspace};
 use crate::condense::by_modes::modal_rows::ModalRows;
 use crate::condense::by_modes::modal_table::{ModalTable, ModalWork};
-use crate::condense::by_modes::single_contact_lanes::SingleContactLanes;
 use crate::condense::{Condensed, FlexibilityWay};
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
@@ -12,9 +11,9 @@ use crate::options::Range;
 use num_complex::Complex64;
 use std::sync::Arc;
 
-/// Degrees of freedom up to which a table by factorisation has all digits, and takes little time.
+/// Degrees of freedom up to which tables at a single frequency, where no branch uses slopes, have them: they take little time.
 /// Kind: tuned; measured on: not recorded.
-const FACTORISED_UP_TO: usize = 100;
+const SLOPES_AT_ONE_UP_TO: usize = 100;
 
 /// Relative error of sums, and of their slopes, which lead steps and change no solution.
 /// Kind: rounding.
@@ -47,21 +46,18 @@ pub struct FrequencyCache {
     workspace: Workspace,
     current: Vec<Table>,
     of_modes: ModalTables,
-    /// Whether a sweep uses tables that are not made by factorisation.
-    is_quicker: bool,
     /// How the table of the lowest vibrating harmonic is made along a sweep, as reported to the caller.
     told: FlexibilityWay,
-    /// Whether the structure is so stiff that factorisations lose the digits that sums have.
-    is_stiff: bool,
     /// Per harmonic, whether its table is made and independent of the frequency.
     constant: Vec<bool>,
     /// Per harmonic, whether its table lacks slopes (a table by factorisation still has those of the response); and
     /// whether it is from modes.
     lacks_slopes: Vec<bool>,
     is_modal: Vec<bool>,
-    /// Frequency of the current tables, how they were made, and whether they have the columns of the contacts.
-    tabulated: Option<(f64, Way, bool)>,
-    way: Way,
+    /// Frequency of the current tables, and whether they have the columns of the contacts.
+    tabulated: Option<(f64, bool)>,
+    /// Whether tables by factorisation have slopes.
+    has_slopes: bool,
 }
 
 /// Tables from modes.
@@ -70,21 +66,8 @@ pub struct ModalTables {
     tables: Vec<Option<ModalTable>>,
     /// Work space of the tables from modes: one for all, or one for each where slopes along a motion follow.
     work: Vec<ModalWork>,
-    /// Tables of all harmonics computed together, where each is from modes of a single contact.
-    lanes: Option<SingleContactLanes>,
     /// Whether the tables from modes have slopes.
     slopes: bool,
-}
-
-/// How tables are made at a frequency.
-#[derive(Clone, Copy, PartialEq)]
-enum Way {
-    /// From modes or poles where the harmonic has such.
-    Quick,
-    /// By factorisation, without slopes where these are expensive.
-    Pointwise,
-    /// By factorisation, with all slopes.
-    Factorised,
 }
 
 impl FrequencyCache {
@@ -98,7 +81,6 @@ impl FrequencyCache {
         let mut workspace = Workspace::new(condensed, Some(response))?;
         let mut tables = Vec::new();
         let (mut modal, mut constant) = (Vec::new(), Vec::new());
-        let (mut is_quicker, mut is_stiff) = (false, false);
         let mut told = None;
         let count = condensed.blocks().len();
         let mut waves = Vec::new();
@@ -116,7 +98,6 @@ impl FrequencyCache {
             } else {
                 None
             };
-            is_quicker |= from_modes.is_some();
             if condensed.blocks()[i].number > 0 && told.is_none() {
                 told = Some(match (condensed.blocks()[i].flexibility_way(), &from_modes) {
                     _ if !sweep => FlexibilityWay::SingleFrequency,
@@ -124,34 +105,22 @@ impl FrequencyCache {
                     (known, _) => known,
                 });
             }
-            let from_modes = from_modes.map(|(table, error)| {
-                is_stiff |= error > FREQUENCY_CACHE_TOLERANCE;
-                table
-            });
             try_push(&mut modal, from_modes, CONTEXT)?;
         }
         Ok(Self {
             workspace,
             current: tables,
             of_modes: ModalTables {
-                lanes: SingleContactLanes::new(&modal)?,
                 tables: modal,
                 work: modal_work,
                 slopes: true,
             },
-            is_quicker,
             told: told.unwrap_or_default(),
-            is_stiff,
             lacks_slopes: try_vec(constant.len(), false, CONTEXT)?,
             is_modal: try_vec(constant.len(), false, CONTEXT)?,
             constant,
             tabulated: None,
-            // Without a sweep no slope is used.
-            way: if !sweep && condensed.ndof() > FACTORISED_UP_TO {
-                Way::Pointwise
-            } else {
-                Way::Quick
-            },
+            has_slopes: sweep || condensed.ndof() <= SLOPES_AT_ONE_UP_TO,
         })
     }
 
@@ -160,24 +129,9 @@ impl FrequencyCache {
         self.told
     }
 
-    /// Selects tables by factorisation from now on, without slopes if these are expensive.
-    pub fn set_pointwise(&mut self, pointwise: bool) {
-        if self.is_quicker {
-            self.way = if pointwise { Way::Pointwise } else { Way::Quick };
-        }
-    }
-
-    /// Selects tables by factorisation with all slopes from now on.
-    pub fn set_factorised(&mut self, factorised: bool) {
-        if self.is_quicker {
-            self.way = if factorised { Way::Factorised } else { Way::Quick };
-        }
-    }
-
     /// Uses the given tables from modes, without slopes, as exactly as an error estimate needs them.
     pub fn set_modes(&mut self, modal: Vec<Option<ModalTable>>) {
         self.of_modes.tables = modal;
-        self.of_modes.lanes = None;
         self.of_modes.slopes = false;
         self.tabulated = None;
     }
@@ -247,11 +201,8 @@ impl FrequencyCache {
         (omega, contacts): (f64, bool),
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        let alone = !contacts
-            && (self.way == Way::Factorised || condensed.tuned().is_some())
-            && condensed.coordinates() >= EXCITED_ALONE_FROM
-            && !condensed.has_exchanges();
-        let is_current = |whole| self.tabulated == Some((omega, self.way, whole));
+        let alone = !contacts && condensed.coordinates() >= EXCITED_ALONE_FROM && !condensed.has_exchanges();
+        let is_current = |whole| self.tabulated == Some((omega, whole));
         if is_current(true) || (alone && is_current(false)) {
             return Ok(());
         }
@@ -259,29 +210,16 @@ impl FrequencyCache {
         if alone {
             return self.tabulate_excited(condensed, omega, interrupt);
         }
-        if self.way == Way::Quick
-            && let Some(lanes) = &self.of_modes.lanes
-            && lanes.evaluate(omega, &mut self.current)
-        {
-            if condensed.has_exchanges() {
-                for (i, table) in self.current.iter_mut().enumerate() {
-                    condensed.exchange(i, omega, table);
-                }
-            }
-            self.tabulated = Some((omega, self.way, true));
-            return Ok(());
-        }
         let may_lack = !condensed.has_exchanges();
         let keeps = self.of_modes.slopes && has_slopes_along(condensed);
         let of_modes = self.of_modes.slopes && !keeps;
-        let exactly = self.takes_factors(condensed);
         let workspace = &mut self.workspace;
         for (i, table) in self.current.iter_mut().enumerate() {
             if self.constant[i] {
                 continue;
             }
             let block = &condensed.blocks()[i];
-            if let Some(Some(modal)) = self.of_modes.tables.get(i).filter(|_| !exactly)
+            if let Some(Some(modal)) = self.of_modes.tables.get(i)
                 && let work = &mut self.of_modes.work[if keeps { i } else { 0 }]
                 && modal.evaluate((omega, of_modes), work, table, interrupt)?
             {
@@ -290,10 +228,7 @@ impl FrequencyCache {
                 continue;
             }
             interrupt.check()?;
-            // A derived clone_from would allocate at each frequency.
-            let slopes = self.way != Way::Pointwise
-                || matches!(self.of_modes.tables.get(i), Some(Some(_)) if self.of_modes.slopes);
-            let slopes = match slopes {
+            let slopes = match self.has_slopes {
                 false => Slopes::None,
                 true if may_lack && (condensed.coordinates() > ALL_SLOPES_UP_TO || condensed.tuned().is_some()) => {
                     Slopes::OfResponse
@@ -306,27 +241,20 @@ impl FrequencyCache {
             condensed.exchange(i, omega, table);
             self.constant[i] = block.number == 0 && block.matrices.tied.is_none();
         }
-        self.tabulated = Some((omega, self.way, true));
+        self.tabulated = Some((omega, true));
         Ok(())
-    }
-
-    /// Whether tables are made by factorisation where sums are possible. A large structure takes sums where a small
-    /// one is factorised: they have as many digits, and cost less.
-    fn takes_factors(&self, condensed: &Condensed) -> bool {
-        self.of_modes.slopes && self.way != Way::Quick && condensed.ndof() <= FACTORISED_UP_TO && !self.is_stiff
     }
 
     /// Makes the tables with the column of the excitation alone: by sums where these are accurate, else by
     /// factorisation.
     fn tabulate_excited(&mut self, condensed: &Condensed, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
-        let exactly = self.takes_factors(condensed);
         for (i, table) in self.current.iter_mut().enumerate() {
             if self.constant[i] {
                 continue;
             }
             interrupt.check()?;
             (self.lacks_slopes[i], self.is_modal[i]) = (false, false);
-            if let Some(Some(modal)) = self.of_modes.tables.get(i).filter(|_| !exactly)
+            if let Some(Some(modal)) = self.of_modes.tables.get(i)
                 && modal.evaluate_excited(omega, &mut self.of_modes.work[0], table, interrupt)?
             {
                 continue;
@@ -334,20 +262,19 @@ impl FrequencyCache {
             self.workspace
                 .tabulate_excited(condensed, (i, omega), table, interrupt)?;
         }
-        self.tabulated = Some((omega, self.way, false));
+        self.tabulated = Some((omega, false));
         Ok(())
     }
 }
 
 /// The table of the i-th carried harmonic from the modes of its wave, where these exist and agree with a
-/// factorisation at both ends of the range; at one end, where an earlier harmonic of the wave has agreed. Also
-/// returns the error of the factorisations, as far as it had to be computed.
+/// factorisation at both ends of the range; at one end, where an earlier harmonic of the wave has agreed.
 fn of_wave(
     (condensed, i, response): (&Condensed, usize, usize),
     range: Range,
     (waves, work, workspace): (&mut Vec<Arc<ModalRows>>, &mut ModalWork, &mut Workspace),
     interrupt: &Interrupt<'_>,
-) -> Result<Option<(ModalTable, f64)>> {
+) -> Result<Option<ModalTable>> {
     let Range { start, stop: end } = range;
     let Some(source) = &condensed.blocks()[i].source else {
         return Ok(None);
@@ -355,18 +282,17 @@ fn of_wave(
     let before = waves.len();
     let rows = ModalRows::shared((condensed, i, response), source.clone(), waves)?;
     let is_known = waves.len() == before;
-    let modal = ModalTable::new((condensed, i), rows, 0.0)?;
+    let modal = ModalTable::new((condensed, i), rows)?;
     let mut table = Table::new(condensed.coordinates())?;
     // The slope is made of the same modes: once shows that it is right.
-    let (mut checks_slope, mut worst) = (true, 0.0_f64);
+    let mut checks_slope = true;
     for omega in [start, end].into_iter().skip(usize::from(is_known)) {
         let memory = (&mut *work, &mut *workspace, &mut table);
-        match agreement(&modal, (condensed, i, omega), &mut checks_slope, memory, interrupt)? {
-            Some(error) => worst = worst.max(error),
-            None => return Ok(None),
+        if !agreement(&modal, (condensed, i, omega), &mut checks_slope, memory, interrupt)? {
+            return Ok(None);
         }
     }
-    Ok(Some((modal, worst)))
+    Ok(Some(modal))
 }
 
 /// Whether tables from modes have slopes only along a motion.
@@ -395,31 +321,30 @@ fn agree_along(
     Ok(worst_column(&by_modes, &exact, coordinates + 1).1 <= OF_SLOPES)
 }
 
-/// Error of a factorisation at a frequency, 0 where it need not be known. Returns `None` where a table from modes
-/// disagrees with the factorisation, or its slope does where that is to be checked; no further slope is checked then.
+/// Whether a table from modes agrees with the factorisation at a frequency, with its slope where that is to be checked; no
+/// further slope is checked then.
 fn agreement(
     modal: &ModalTable,
     (condensed, i, omega): (&Condensed, usize, f64),
     checks_slope: &mut bool,
     (work, workspace, table): (&mut ModalWork, &mut Workspace, &mut Table),
     interrupt: &Interrupt<'_>,
-) -> Result<Option<f64>> {
+) -> Result<bool> {
     let outputs = condensed.coordinates() + 1;
     if *checks_slope && has_slopes_along(condensed) {
         if !modal.evaluate((omega, false), work, table, interrupt)? {
-            return Ok(Some(0.0));
+            return Ok(true);
         }
         // Where they do not agree along a motion, the whole table shows which is right.
         *checks_slope = !agree_along(modal, (condensed, i, omega), (work, workspace), interrupt)?;
     }
     if !modal.evaluate((omega, *checks_slope), work, table, interrupt)? {
-        return Ok(Some(0.0));
+        return Ok(true);
     }
     let exact = workspace.evaluate(condensed, i, omega, *checks_slope, interrupt)?;
     let parts = [(&table.value, &exact.value), (&table.slope, &exact.slope)];
     let checked = if core::mem::replace(checks_slope, false) { 2 } else { 1 };
     let allowed = [FREQUENCY_CACHE_TOLERANCE, OF_SLOPES];
-    let mut own = 0.0_f64;
     let mut off = Vec::new();
     for (part, (by_modes, exact)) in parts.into_iter().take(checked).enumerate() {
         let (column, deviation) = worst_column(by_modes, exact, outputs);
@@ -440,13 +365,10 @@ fn agreement(
         )
         .1;
         if !(of_modes <= allowed[part].max(BEYOND_FACTORS * of_factors) && of_factors.is_finite()) {
-            return Ok(None);
-        }
-        if part == 0 {
-            own = of_factors;
+            return Ok(false);
         }
     }
-    Ok(Some(own))
+    Ok(true)
 }
 
 /// Index of the column with the largest relative deviation between two tables of `outputs` rows, and the deviation.

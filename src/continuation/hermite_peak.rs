@@ -13,6 +13,7 @@ use crate::continuation::special_points::Locator;
 use crate::error::{Error, Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::problem::Problem;
+use crate::roots::root;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the peak between solutions";
@@ -28,10 +29,6 @@ const MOST_SOLUTIONS: usize = 4;
 /// Kind: rounding.
 const CLOSE_BY: f64 = 1e-6;
 const CLOSE_BY_PARAMETER: f64 = 1e-9;
-
-/// Halvings of the range in search of a root of the polynomial.
-/// Kind: cap.
-const ROOT_HALVINGS: usize = 45;
 
 /// Step of a difference of the polynomial, over the distance of the ends.
 /// Kind: tuned; measured on: not recorded.
@@ -128,30 +125,6 @@ impl<'p> Nodes<'p> {
         self.sense * (z.conj() * dz).re
     }
 
-    /// Root of the growth within a range in which it falls through zero.
-    fn root(&mut self, (mut low, mut high): (f64, f64)) -> f64 {
-        let (mut at_low, mut at_high) = (self.growth(low), self.growth(high));
-        for i in 0..ROOT_HALVINGS {
-            let secant = low + (high - low) * at_low / (at_low - at_high);
-            let middle = 0.5 * (low + high);
-            let p = if i % 2 == 0 && secant.is_finite() {
-                secant
-            } else {
-                middle
-            };
-            let here = self.growth(p);
-            if here == 0.0 || p.to_bits() == low.to_bits() || p.to_bits() == high.to_bits() {
-                return p;
-            }
-            if (here > 0.0) == (at_low > 0.0) {
-                (low, at_low) = (p, here);
-            } else {
-                (high, at_high) = (p, here);
-            }
-        }
-        0.5 * (low + high)
-    }
-
     /// Interpolated unknowns and parameter at p.
     fn solution(&mut self, p: f64) -> Result<Vec<f64>> {
         weights(&self.places, p, &mut self.weights);
@@ -188,11 +161,14 @@ impl Locator {
                 return Ok(None);
             };
             let range = (nodes[between.0].parameter(), nodes[between.1].parameter());
-            let p = near.root(range);
+            let [at_low, at_high] = [range.0, range.1].map(|p| near.growth(p));
+            let p = root((range.0, at_low), (range.1, at_high), |p| {
+                Ok::<_, Error>(near.growth(p))
+            })?;
             let step = OF_DIFFERENCE * width;
             let bend = (near.growth(p + step) - near.growth(p - step)) / (2.0 * step);
             // At a corner within the range the polynomial bends more than the branch.
-            let secant = (near.growth(range.1) - near.growth(range.0)) / (range.1 - range.0);
+            let secant = (at_high - at_low) / (range.1 - range.0);
             let bend = bend.abs().min(secant.abs());
             let guess = near.solution(p)?;
             let sense = near.sense;

@@ -2,7 +2,6 @@
 
 pub mod arc_cubic;
 pub mod arc_length;
-pub mod bracket;
 pub mod corrector;
 mod curvature_circle;
 mod hermite_peak;

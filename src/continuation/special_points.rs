@@ -2,13 +2,13 @@
 //! given parameter values, each solved for and not interpolated.
 
 use crate::continuation::arc_cubic::Cubic;
-use crate::continuation::bracket::{BRACKET_WIDTH, Bracket};
 use crate::continuation::corrector::{Corrector, Outcome};
 use crate::continuation::{Metric, Point, Settings};
 use crate::error::{Result, try_copy, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::problem::Problem;
+use crate::roots::{BRACKET_WIDTH, Bracket, root};
 
 /// Special points that are searched for between two points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -296,18 +296,11 @@ impl Locator {
         let n = a.v.len() - 1;
         let cubic = Cubic::new(a, b, metric);
         let mut v = try_copy(&a.v, CONTEXT)?;
-        let (mut low, mut high) = (0.0, 1.0);
-        let rising = b.parameter() > a.parameter();
-        for _ in 0..50 {
-            let s = 0.5 * (low + high);
-            cubic.at(s, &mut v, &mut self.derivative);
-            if (v[n] < p) == rising {
-                low = s;
-            } else {
-                high = s;
-            }
-        }
-        Ok(0.5 * (low + high))
+        let derivative = &mut self.derivative;
+        root((0.0, a.parameter() - p), (1.0, b.parameter() - p), |s| {
+            cubic.at(s, &mut v, derivative);
+            Ok(v[n] - p)
+        })
     }
 
     /// Solves in the plane across the cubic at s, or at a fixed parameter.

@@ -76,9 +76,6 @@ pub(crate) trait LinearParts {
         Ok(None)
     }
 
-    /// Selects the most accurate evaluation for [`Self::linear_at`].
-    fn set_accurate(&mut self, _accurate: bool) {}
-
     /// Largest share of its linear range that a contact uses at a point.
     fn linear_share(&mut self, _point: &Point) -> Result<f64> {
         Ok(f64::NAN)

@@ -1,7 +1,6 @@
 //! The error of a point of a forced response.
 
 use crate::condense::blocks::more_harmonics;
-use crate::condense::by_modes::modal_rows::ModalRows;
 use crate::condense::by_modes::modal_table::ModalTable;
 use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Resolution};
@@ -45,11 +44,6 @@ const FORCED_RESPONSE_ERROR_SMALL: usize = 32;
 /// Kind: tuned; measured on: not recorded.
 const SHARED: f64 = 0.5;
 
-/// Relative error of tables over the tolerance, and its range.
-/// Kind: tuned; measured on: not recorded.
-const OF_TABLES: f64 = 1e-3;
-const EXACTEST: (f64, f64) = (1e-7, 1e-5);
-
 /// Error over its estimate where the change from half the harmonics is not known.
 /// Kind: tuned; measured on: random chains of `tests/robustness/near_rigid_chains.rs`.
 const UNCHECKED: f64 = 2.0;
@@ -57,11 +51,6 @@ const UNCHECKED: f64 = 2.0;
 /// Extended problems that are kept for the next point.
 /// Kind: tuned; measured on: not recorded.
 const FORCED_RESPONSE_ERROR_MOST_KEPT: usize = 3;
-
-/// Relative error of tables for an estimate whose tolerance is given.
-pub(super) fn tables_within(tolerance: f64) -> f64 {
-    (OF_TABLES * tolerance).clamp(EXACTEST.0, EXACTEST.1)
-}
 
 /// Estimates the errors of points of one model, one after the other.
 pub struct ForcedEstimator<'a> {
@@ -105,7 +94,6 @@ pub struct Judged {
 pub struct Shared<'a> {
     /// Modes of the waves; and the number of flexibility tables made so far.
     waves: &'a SharedWaves,
-    rows: Vec<Arc<ModalRows>>,
     tables: usize,
 }
 
@@ -139,11 +127,7 @@ impl<'a> ForcedEstimator<'a> {
                 allowed: 0.0,
                 most: f64::INFINITY,
             },
-            shared: Shared {
-                waves,
-                rows: Vec::new(),
-                tables: 0,
-            },
+            shared: Shared { waves, tables: 0 },
             second: SecondEstimate::default(),
         }
     }
@@ -427,28 +411,13 @@ impl<'a> ForcedEstimator<'a> {
         }
     }
 
-    /// The table of each harmonic from modes, where it has them, within a tolerance.
-    fn modal_tables(&mut self, condensed: &Condensed, tolerance: f64) -> Result<Vec<Option<ModalTable>>> {
+    /// The table of each harmonic from modes, where it has them.
+    fn modal_tables(&mut self, condensed: &Condensed) -> Result<Vec<Option<ModalTable>>> {
         let mut tables: Vec<Option<ModalTable>> = Vec::new();
-        let blocks = condensed.blocks();
-        for (i, block) in blocks.iter().enumerate() {
-            let known = blocks[..i].iter().position(|known| known.shares_matrices(block));
-            let of_earlier = || self.shared.rows.iter().find(|rows| rows.are_of_block(block));
-            let rows = match known.and_then(|known| tables[known].as_ref()) {
-                Some(table) => Some(table.rows()),
-                None if let Some(rows) = of_earlier() => Some(Arc::clone(rows)),
-                None => match self.shared.waves.of(self.model, condensed, i, self.interrupt)? {
-                    Ok(modes) => {
-                        let rows = self.shared.waves.rows((condensed, i, self.asked.response), modes)?;
-                        if !self.shared.rows.iter().any(|known| Arc::ptr_eq(known, &rows)) {
-                            try_push(&mut self.shared.rows, Arc::clone(&rows), CONTEXT)?;
-                        }
-                        Some(rows)
-                    }
-                    Err(_) => None,
-                },
-            };
-            let table = rows.map(|rows| ModalTable::new((condensed, i), rows, tolerance));
+        for i in 0..condensed.blocks().len() {
+            let modes = self.shared.waves.of(self.model, condensed, i, self.interrupt)?;
+            let rows = modes.map(|modes| self.shared.waves.rows((condensed, i, self.asked.response), modes));
+            let table = rows.ok().map(|rows| ModalTable::new((condensed, i), rows?));
             try_push(&mut tables, table.transpose()?, CONTEXT)?;
         }
         Ok(tables)
@@ -534,8 +503,7 @@ impl<'a> ForcedEstimator<'a> {
         };
         system.is_monotone = condensed.has_exchanges();
         if by_modes && !system.problem.has_modes() {
-            let tolerance = tables_within(self.options.tolerance);
-            let modal = self.modal_tables(condensed, tolerance)?;
+            let modal = self.modal_tables(condensed)?;
             system.problem.set_modes(modal);
         }
         let tolerances = [self.options.tol_residual, self.options.tolerance];

@@ -11,7 +11,6 @@ use crate::harmonics::estimate::{
 use crate::harmonics::extended_newton::{FirstStep, extend};
 use crate::harmonics::extended_system::ExtendedSystem;
 use crate::harmonics::factored_harmonics::{factored, whole};
-use crate::harmonics::forced_response_error::tables_within;
 use crate::harmonics::mode_doubling::{ModeRatios, ModeSeries};
 use crate::harmonics::work::{OF_A_START, Sizes, Work};
 use crate::harmonics::{Corrected, Estimate, Solved};
@@ -285,8 +284,7 @@ impl<'a> ModeEstimator<'a> {
             system
         } else {
             let (linear, gauge, interrupt) = (self.linear, self.gauge, self.interrupt);
-            let mut problem = boxed(|| Epmc::new(condensed, gauge, linear, resolution.samples, interrupt))?;
-            problem.set_tolerance(tables_within(self.options.tolerance))?;
+            let problem = boxed(|| Epmc::new(condensed, gauge, linear, resolution.samples, interrupt))?;
             boxed(|| ExtendedSystem::iterative(*problem, state.log10_amplitude, chosen, (sizes, work)))?
         };
         let mut found = self.extended_with(&mut system, condensed, (solved, from), state, stage);

@@ -158,7 +158,7 @@ impl<'a> Epmc<'a> {
         Ok(Self {
             condensed,
             forces,
-            structure: boxed(|| ModeFlexibility::new(condensed, gauge.reference_dof, 0.0))?,
+            structure: boxed(|| ModeFlexibility::new(condensed, gauge.reference_dof))?,
             gauge,
             linear,
             memory: ModeMemory {
@@ -190,16 +190,6 @@ impl<'a> Epmc<'a> {
             guess: None,
             is_repeated: false,
         })
-    }
-
-    /// Sets the relative tolerance of the flexibility, as an error estimate needs it.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
-    pub fn set_tolerance(&mut self, tolerance: f64) -> Result<()> {
-        let (condensed, dof) = (self.condensed, self.gauge.reference_dof);
-        self.structure = boxed(|| ModeFlexibility::new(condensed, dof, tolerance))?;
-        Ok(())
     }
 
     /// States that several linear modes share the frequency. Nonlinear modes may then lie in a continuum: bodies that

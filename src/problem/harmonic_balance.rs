@@ -644,14 +644,6 @@ impl Problem for HarmonicBalance<'_> {
         }
         passed_resonance::between(self.condensed.set(), a, b, length)
     }
-
-    fn set_pointwise(&mut self, pointwise: bool) {
-        self.tables.set_pointwise(pointwise);
-    }
-
-    fn set_factorised(&mut self, factorised: bool) {
-        self.tables.set_factorised(factorised);
-    }
 }
 
 #[cfg(test)]

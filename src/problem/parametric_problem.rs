@@ -129,13 +129,6 @@ pub trait Problem: Jacobian {
     fn resonance_between(&self, _a: &End<'_>, _b: &End<'_>, _length: f64) -> Option<f64> {
         None
     }
-
-    /// Selects the most accurate evaluation at the following parameter values, instead of the fast one along a
-    /// branch. Derivatives by the parameter may then be zero.
-    fn set_pointwise(&mut self, _pointwise: bool) {}
-
-    /// Selects an evaluation as accurate as `set_pointwise` does, with accurate derivatives by the parameter as well.
-    fn set_factorised(&mut self, _factorised: bool) {}
 }
 
 /// Adds a complex number (the real part alone for the mean) at position `r` of a packed vector.

@@ -7,6 +7,7 @@ use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
 use crate::model::matrices::speed::Speed;
+use crate::roots::Bracket;
 
 /// Relative accuracy of a crossing.
 /// Kind: rounding.
@@ -427,14 +428,14 @@ fn tell_growth(found: &Campbell, is_wheel: bool, hooks: &mut Hooks<'_>) {
     hooks.log(LogLevel::Warn, &text);
 }
 
-/// The speed between two others at which mode k has the frequency EO·Ω, by the Illinois variant of regula falsi, and
+/// The speed between two others at which mode k has the frequency EO·Ω, and
 /// the modes at this speed; `None` where the frequency jumps over EO·Ω, or the mode ceases to oscillate between the
 /// two.
 fn meet(
     at: &mut impl FnMut(f64) -> Result<DampedModes>,
     k: usize,
     order: f64,
-    (mut a, mut b): ((f64, f64), (f64, f64)),
+    (a, b): ((f64, f64), (f64, f64)),
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<(f64, DampedModes)>> {
     if a.1 == 0.0 || b.1 == 0.0 {
@@ -442,33 +443,24 @@ fn meet(
         let modes = at(speed)?;
         return Ok((k < modes.count()).then_some((speed, modes)));
     }
-    let mut side = 0;
+    let mut bracket = Bracket::between(a, b);
     let mut best = None;
     for _ in 0..CAMPBELL_MAX_STEPS {
         interrupt.check()?;
-        let speed = (a.0 * b.1 - b.0 * a.1) / (b.1 - a.1);
+        let speed = bracket.guess();
         let modes = at(speed)?;
         if k >= modes.count() {
             return Ok(None);
         }
         let gap = modes.omega(k) - order * speed;
-        let done =
-            gap.abs() <= CAMPBELL_TOLERANCE * modes.omega(k) || (b.0 - a.0).abs() <= CAMPBELL_TOLERANCE * speed.abs();
+        let close = CAMPBELL_TOLERANCE * speed.abs();
+        let done = gap.abs() <= CAMPBELL_TOLERANCE * modes.omega(k)
+            || bracket.narrow(speed, gap) <= close
+            || bracket.width() <= close;
         best = Some((speed, modes));
         if done {
             break;
         }
-        let same_as_a = gap * a.1 > 0.0;
-        let (moved, other, this) = if same_as_a {
-            (&mut a, &mut b, -1)
-        } else {
-            (&mut b, &mut a, 1)
-        };
-        *moved = (speed, gap);
-        if side == this {
-            other.1 *= 0.5;
-        }
-        side = this;
     }
     // The bracket also closes on a jump.
     Ok(best.filter(|(speed, modes)| {

@@ -1,14 +1,12 @@
 //! The largest displacement of one degree of freedom over steps, from their polynomials.
 
+use crate::roots::root;
 use crate::time_integration::step_polynomial::StepPolynomial;
+use std::convert::Infallible;
 
 /// Parts of a step between which the velocity is looked at: steps are shorter than half a period of the quickest motion.
 /// Kind: tuned; measured on: not recorded.
 const LARGEST_MOTION_PARTS: usize = 8;
-
-/// Halvings of a part in which the velocity changes its sign.
-/// Kind: cap.
-const LARGEST_MOTION_HALVINGS: usize = 60;
 
 /// Search for the largest |x| of a degree of freedom.
 pub(crate) struct LargestMotion<'a> {
@@ -49,19 +47,9 @@ impl<'a> LargestMotion<'a> {
             let high = theta * part as f64 / LARGEST_MOTION_PARTS as f64;
             let after = at(high);
             if (before.1 < 0.0) != (after.1 < 0.0) {
-                let (mut a, mut b) = (low, high);
-                for _ in 0..LARGEST_MOTION_HALVINGS {
-                    let middle = 0.5 * (a + b);
-                    if middle <= a || middle >= b {
-                        break;
-                    }
-                    if (at(middle).1 < 0.0) == (before.1 < 0.0) {
-                        a = middle;
-                    } else {
-                        b = middle;
-                    }
-                }
-                self.take(step, a, at(a).0);
+                let turned = root((low, before.1), (high, after.1), |s| Ok::<_, Infallible>(at(s).1));
+                let turned = turned.unwrap_or(low);
+                self.take(step, turned, at(turned).0);
             }
             self.take(step, high, after.0);
             (low, before) = (high, after);

@@ -5,12 +5,12 @@
 //! multipliers these are. Where the branch turns in between, positive real multipliers are not counted: the one that
 //! passes 1 belongs to the fold.
 
-use crate::continuation::bracket::Bracket;
 use crate::continuation::special_points::{Locator, SpecialPoint};
 use crate::continuation::{Point, PointAt};
 use crate::error::{Result, try_push};
 use crate::harmonics::discretised::Traceable;
 use crate::results::{BifurcationKind, SpecialKind, Verdict};
+use crate::roots::Bracket;
 use crate::tracing::course::BranchTracer;
 use num_complex::Complex64;
 

@@ -5,7 +5,6 @@
 //! amplitude between them. A stretch ends where a contact leaves its linear state, which is located to rounding, or at
 //! the end of the range.
 
-use crate::continuation::bracket::Bracket;
 use crate::continuation::special_points::SpecialPoint;
 use crate::continuation::{Point, PointAt};
 use crate::error::{Result, Status, try_push};
@@ -14,6 +13,7 @@ use crate::hooks::{Hooks, LogLevel};
 use crate::linalg::norm;
 use crate::options::Range;
 use crate::results::SpecialKind;
+use crate::roots::{Bracket, least};
 use crate::tracing::course::{BranchTracer, Stretch, some_unless_lost};
 use crate::tracing::resonance_grid::LinearGrid;
 use crate::tracing::response_kinks;
@@ -29,13 +29,9 @@ enum Next {
 /// Kind: tuned; measured on: not recorded.
 const LINEAR_STRETCH_NEARLY: f64 = 0.7;
 
-/// Evaluations of a search for such a maximum.
-/// Kind: cap.
-const GOLDEN_STEPS: usize = 16;
-
-/// Ratio of the golden section.
-/// Kind: fixed.
-const LINEAR_STRETCH_GOLDEN: f64 = 0.618_033_988_749_894_9;
+/// Width, over the distance of the two values, at which the place of such a maximum is found.
+/// Kind: tuned; measured on: not recorded.
+const FOUND_SHARE: f64 = 5e-4;
 
 /// Relative width of an interval that is rounding.
 /// Kind: rounding.
@@ -52,12 +48,6 @@ const UNCERTAIN: f64 = 0.05;
 /// Largest number of evaluations of a root search.
 /// Kind: cap.
 const LINEAR_STRETCH_MAX_EVALUATIONS: usize = 100;
-
-/// Half width of the first bracket around an approximate root, relative to the parameter, and the factor by which it
-/// widens.
-/// Kind: tuned; measured on: not recorded.
-const BRACKET: f64 = 1e-10;
-const WIDENING: f64 = 100.0;
 
 /// Relative distance from an undamped resonance at which its part of the motion dominates, however small its force.
 /// Kind: rounding.
@@ -168,37 +158,23 @@ fn next_linear(tracer: &BranchTracer<'_>, analysis: &mut dyn Traceable, here: &P
         return Ok(Next::Reached(point));
     }
     // The share may have a maximum above 1 between two values.
-    let (mut low, mut high) = (here.parameter(), value);
-    let mut inner = [
-        high - LINEAR_STRETCH_GOLDEN * (high - low),
-        low + LINEAR_STRETCH_GOLDEN * (high - low),
-    ];
-    let mut found = [0.0; 2];
-    for (at, share) in inner.iter().zip(&mut found) {
-        match share_at(tracer, analysis, here, *at)? {
-            Some(known) => *share = known,
-            None => return onset(tracer, analysis, here, *at),
+    let here_at = here.parameter();
+    let range = [here_at.min(value), here_at.max(value)];
+    let mut beyond = None;
+    let found = least(range, FOUND_SHARE * (range[1] - range[0]), |at| {
+        match share_at(tracer, analysis, here, at) {
+            Ok(Some(share)) => Ok(-share),
+            Ok(None) => {
+                beyond = Some(at);
+                Err(None)
+            }
+            Err(failed) => Err(Some(failed)),
         }
-    }
-    for _ in 0..GOLDEN_STEPS {
-        let left = found[0] > found[1];
-        let at = if left {
-            high = inner[1];
-            inner[1] = inner[0];
-            found[1] = found[0];
-            inner[0] = high - LINEAR_STRETCH_GOLDEN * (high - low);
-            inner[0]
-        } else {
-            low = inner[0];
-            inner[0] = inner[1];
-            found[0] = found[1];
-            inner[1] = low + LINEAR_STRETCH_GOLDEN * (high - low);
-            inner[1]
-        };
-        match share_at(tracer, analysis, here, at)? {
-            Some(known) => found[usize::from(!left)] = known,
-            None => return onset(tracer, analysis, here, at),
-        }
+    });
+    match (found, beyond) {
+        (Err(Some(failed)), _) => return Err(failed),
+        (_, Some(at)) => return onset(tracer, analysis, here, at),
+        _ => {}
     }
     // The problem must be evaluated at the point that is recorded next.
     Ok(match analysis.linear_at(here, value, tracer.interrupt)? {
@@ -385,7 +361,7 @@ fn find_peaks(
     Ok(())
 }
 
-/// Records the maximum between two values: the root of the derivative, found fast and then accurately.
+/// Records the maximum between two values: the root of the derivative.
 fn find_peak(
     tracer: &mut BranchTracer<'_>,
     analysis: &mut dyn Traceable,
@@ -393,50 +369,10 @@ fn find_peak(
     from: &Point,
     ends: [(f64, f64); 2],
 ) -> Result<()> {
-    let Some(near) = stationary(tracer, analysis, kind, from, ends)? else {
+    let Some(peak) = stationary(tracer, analysis, kind, from, ends)? else {
         return Ok(());
     };
-    analysis.set_accurate(true);
-    let accurate = stationary_near(tracer, analysis, kind, &near, (ends[0].0, ends[1].0));
-    let recorded = accurate.and_then(|peak| {
-        let peak = match peak {
-            Some(peak) => Some(peak),
-            None => analysis.linear_at(&near, near.parameter(), tracer.interrupt)?,
-        };
-        match peak {
-            Some(peak) => record_on_line(tracer, analysis, kind, peak),
-            None => Ok(()),
-        }
-    });
-    analysis.set_accurate(false);
-    recorded
-}
-
-/// Finds the maximum near a good approximation, from a bracket around it that is widened until it holds the root.
-fn stationary_near(
-    tracer: &BranchTracer<'_>,
-    analysis: &mut dyn Traceable,
-    kind: SpecialKind,
-    near: &Point,
-    (low, high): (f64, f64),
-) -> Result<Option<Point>> {
-    let at = near.parameter();
-    let mut width = BRACKET * at.abs();
-    while width < high - low {
-        let values = [(at - width).max(low), (at + width).min(high)];
-        let mut ends = [(0.0, 0.0); 2];
-        for (end, value) in ends.iter_mut().zip(values) {
-            let Some(point) = analysis.linear_at(near, value, tracer.interrupt)? else {
-                return Ok(None);
-            };
-            *end = (value, growth_of(analysis, kind, &point)?);
-        }
-        if ends[0].1 > 0.0 && ends[1].1 <= 0.0 {
-            return stationary(tracer, analysis, kind, near, ends);
-        }
-        width *= WIDENING;
-    }
-    Ok(None)
+    record_on_line(tracer, analysis, kind, peak)
 }
 
 /// A root of the amplitude's derivative between two values.
@@ -454,7 +390,9 @@ fn stationary(
         let (share, is_last) = (bracket.guess(), bracket.is_last());
         let at = low.0 + share * width;
         let rounding = LINEAR_STRETCH_ROUNDING * at.abs();
-        if bracket.width() * width <= rounding || at <= low.0 || at >= high.0 {
+        // A root at an end of the bracket is solved there.
+        let is_inside = low.0 < at && at < high.0;
+        if best.is_some() && (bracket.width() * width <= rounding || !is_inside) {
             break;
         }
         let Some(point) = analysis.linear_at(near, at, tracer.interrupt)? else {
@@ -465,11 +403,6 @@ fn stationary(
         if slope == 0.0 || is_last || bracket.narrow(share, slope) * width <= rounding {
             break;
         }
-    }
-    if best.is_none() {
-        // The root is at an end, up to rounding.
-        let end = if low.1.abs() <= high.1.abs() { low.0 } else { high.0 };
-        best = analysis.linear_at(near, end, tracer.interrupt)?;
     }
     Ok(best)
 }

@@ -11,7 +11,9 @@ use crate::harmonics::discretised::Traceable;
 use crate::linalg::norm;
 use crate::problem::gauges::Seen;
 use crate::results::SpecialKind;
+use crate::roots::root;
 use crate::tracing::course::BranchTracer;
+use std::convert::Infallible;
 use std::f64::consts::{PI, TAU};
 
 const CONTEXT: &str = "the kinks of a response";
@@ -37,10 +39,6 @@ const WITHOUT_JUMP: (f64, f64) = (1e-5, 3.0);
 /// Kind: tuned; measured on: not recorded.
 const BESIDE_MEETING: f64 = 10.0;
 const MOST_AWAY: f64 = 0.3;
-/// Halvings in search of the place where two parabolas meet.
-/// Kind: cap.
-const HALVINGS_OF_MEETING: usize = 50;
-
 /// Least distance of two solutions over the gap that tell how a slope changes.
 /// Kind: tuned; measured on: not recorded.
 const TELLS_BEND: f64 = 0.1;
@@ -108,20 +106,13 @@ impl Parabola {
 }
 
 /// Share of the chord between `low` and `high` where the two parabolas are equal, or the end next to it.
-fn meeting(sides: &(Parabola, Parabola), (mut low, mut high): (f64, f64)) -> f64 {
+fn meeting(sides: &(Parabola, Parabola), (low, high): (f64, f64)) -> f64 {
     let leads = |t: f64| sides.0.at(t) - sides.1.at(t);
     if leads(high) >= 0.0 {
         return high;
     }
-    for _ in 0..HALVINGS_OF_MEETING {
-        let middle = 0.5 * (low + high);
-        if leads(middle) > 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    0.5 * (low + high)
+    let ends = ((low, leads(low)), (high, leads(high)));
+    root(ends.0, ends.1, |t| Ok::<_, Infallible>(leads(t))).unwrap_or(low)
 }
 
 /// Records the kinks of all responses between two neighbouring points.

@@ -13,6 +13,7 @@ use crate::harmonics::discretised::Traceable;
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
+use crate::roots::root;
 
 const CONTEXT: &str = "the last points of the branch";
 
@@ -29,10 +30,6 @@ const RETRACING_CLOSE: f64 = 0.2;
 /// that comes back along its own points has the other one, unless rounding hides it.
 /// Kind: tuned; measured on: not recorded.
 const RETRACING_SAME: (f64, f64) = (1e-2, 1e-3);
-
-/// Bisections that find a parameter value on a cubic.
-/// Kind: cap.
-const RETRACING_BISECTIONS: usize = 50;
 
 /// The points recorded last, without a gap between them.
 pub(super) struct RecentPoints {
@@ -202,18 +199,11 @@ fn on_cubic(a: &Point, b: &Point, metric: Metric, p: f64) -> Result<Vec<f64>> {
     let cubic = Cubic::new(a, b, metric);
     let mut v = try_vec(a.v.len(), 0.0, CONTEXT)?;
     let mut derivative = try_vec(a.v.len(), 0.0, CONTEXT)?;
-    let (mut low, mut high) = (0.0, 1.0);
-    let rises = b.parameter() > a.parameter();
-    for _ in 0..RETRACING_BISECTIONS {
-        let middle = 0.5 * (low + high);
-        cubic.at(middle, &mut v, &mut derivative);
-        if (v[v.len() - 1] < p) == rises {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
     let n = v.len() - 1;
+    root((0.0, a.parameter() - p), (1.0, b.parameter() - p), |s| {
+        cubic.at(s, &mut v, &mut derivative);
+        Ok::<_, Error>(v[n] - p)
+    })?;
     v[n] = p;
     Ok(v)
 }

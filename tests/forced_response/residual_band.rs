@@ -429,6 +429,31 @@ fn curves_have_the_band_of_each_point() {
     assert!(refusal.to_string().contains("amplitude at each frequency"));
 }
 
+/// Asserts that two models of one wedge have the same band, the second one of these sliders.
+fn assert_same_band(one: &Model, two: &Model, highest: usize, sliders: &[(usize, usize)], allowed: f64) {
+    let solver = harmonics(highest);
+    for omega in [1.2, 1.3] {
+        let options = BandOptions {
+            starts: 2,
+            ..BandOptions::default()
+        };
+        let [one, two] = [one, two].map(|model| {
+            let branch = solve_at(model, &solver, omega);
+            band(model, &branch, 0, &solver, &options, &mut Hooks::default()).unwrap()
+        });
+        assert_eq!(two.sliders, sliders);
+        for (one, two) in [(&one.lower, &two.lower), (&one.upper, &two.upper)] {
+            assert!(
+                (one.value / two.value - 1.0).abs() < allowed,
+                "{} {} {:?}",
+                one.value,
+                two.value,
+                two.places
+            );
+        }
+    }
+}
+
 /// The contact with the platform as two of half its stiffness: a band of two sliders, whose limits allow no more.
 #[test]
 fn two_contacts_that_share_a_face_have_the_band_of_one() {
@@ -443,59 +468,14 @@ fn two_contacts_that_share_a_face_have_the_band_of_one() {
     for contact in [shared.clone(), whole.contacts()[BLADE].clone(), shared] {
         model.add_contact(&contact).unwrap();
     }
-    let solver = harmonics(9);
-    for omega in [1.2, 1.3] {
-        let (one, two) = (solve_at(&whole, &solver, omega), solve_at(&model, &solver, omega));
-        let options = BandOptions {
-            starts: 2,
-            ..BandOptions::default()
-        };
-        let one = band(&whole, &one, 0, &solver, &options, &mut Hooks::default()).unwrap();
-        let two = band(&model, &two, 0, &solver, &options, &mut Hooks::default()).unwrap();
-        println!(
-            "{} {} / {} {} {:?} {:?} {} solved",
-            one.lower.value,
-            one.upper.value,
-            two.lower.value,
-            two.upper.value,
-            two.lower.places,
-            two.upper.places,
-            two.solved
-        );
-        assert_eq!(two.sliders, [(0, 0), (2, 0)]);
-        assert!((one.lower.value / two.lower.value - 1.0).abs() < 1e-6);
-        assert!((one.upper.value / two.upper.value - 1.0).abs() < 1e-6);
-    }
+    assert_same_band(&whole, &model, 9, &[(0, 0), (2, 0)], 1e-6);
 }
 
 /// Friction in a plane across which nothing acts has the band of friction along it.
 #[test]
 fn friction_in_a_plane_has_the_band_of_its_line() {
-    let solver = harmonics(7);
     let line = wedge([0.6, 0.2], 0.1, ContactKind::Friction2d(Friction2d::default()));
-    let plane = across(0.1);
-    for omega in [1.2, 1.3] {
-        let (one, two) = (solve_at(&line, &solver, omega), solve_at(&plane, &solver, omega));
-        let options = BandOptions {
-            starts: 2,
-            ..BandOptions::default()
-        };
-        let one = band(&line, &one, 0, &solver, &options, &mut Hooks::default()).unwrap();
-        let two = band(&plane, &two, 0, &solver, &options, &mut Hooks::default()).unwrap();
-        println!(
-            "{} {} / {} {} {:?} {:?} {} solved",
-            one.lower.value,
-            one.upper.value,
-            two.lower.value,
-            two.upper.value,
-            two.lower.places,
-            two.upper.places,
-            two.solved
-        );
-        assert_eq!(two.sliders, [(0, 0), (0, 1)]);
-        assert!((one.lower.value / two.lower.value - 1.0).abs() < 1e-5);
-        assert!((one.upper.value / two.upper.value - 1.0).abs() < 1e-5);
-    }
+    assert_same_band(&line, &across(0.1), 7, &[(0, 0), (0, 1)], 1e-5);
 }
 
 /// The wedge with friction in a plane at the platform, integrated in time step by step (velocity Verlet, return to the disc of the limit):

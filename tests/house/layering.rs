@@ -6,11 +6,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Layer of each room of the crate. Within a layer rooms do not know each other unless listed in [`SAME_LAYER`].
-const LAYERS: [(&str, u8); 26] = [
+const LAYERS: [(&str, u8); 27] = [
     ("shortage", 0),
     ("error", 0),
     ("byte_stream", 0),
     ("interrupt", 0),
+    ("roots", 0),
     ("hooks", 0),
     ("linalg", 1),
     ("fourier", 1),
@@ -54,7 +55,7 @@ const SAME_LAYER: [(&str, &str); 10] = [
 /// Rooms that may import nothing but these, whatever their layer: the continuation never sees a model or a contact, and
 /// the C boundary holds no numerics.
 const ONLY: [(&str, &[&str]); 2] = [
-    ("continuation", &["problem", "linalg", "error", "interrupt"]),
+    ("continuation", &["problem", "linalg", "roots", "error", "interrupt"]),
     (
         "capi",
         &[

@@ -4,8 +4,8 @@
 use crate::common::models::{self, free_end, oscillator};
 use crate::common::{at_dof, data, number, omega_range};
 use hbvib::{
-    Constant, Contact, Duty, Error, Hooks, Life, LifeEventKind, LifeFollow, LifeOptions, Model, SolverOptions, Status,
-    Wear, best_load_for_life, forced_response, life,
+    BestLoad, Constant, Contact, Duty, Error, Hooks, Life, LifeEventKind, LifeFollow, LifeOptions, Model,
+    SolverOptions, Status, Wear, best_load_for_life, forced_response, life,
 };
 use std::f64::consts::PI;
 
@@ -406,12 +406,10 @@ fn a_life_goes_on_from_its_depths_and_tells_its_limit() {
     assert_eq!(stuck.points[1].depths, [0.0]);
 }
 
-/// Against a scan of lives at many factors.
-#[test]
-fn the_best_load_for_a_life_is_that_of_a_scan() {
-    let model = chain(&[1.0]);
+/// The best load for eight cycles of a life at the peak, and the largest amplitude of such a life with a factor.
+fn best_of(wear: &[Wear]) -> (BestLoad, impl Fn(f64) -> f64 + '_) {
     let options = LifeOptions {
-        wear: &wear(&[0.02]),
+        wear,
         stiffness: &[1.0],
         follow: LifeFollow::Peak {
             omega_start: 0.6,
@@ -421,8 +419,17 @@ fn the_best_load_for_a_life_is_that_of_a_scan() {
         tolerance: 1e-6,
         ..LifeOptions::default()
     };
-    let best = best_load_for_life(&model, &solver(3), &options, (0.2, 3.0), &mut Hooks::default()).unwrap();
-    let largest = |factor: f64| run(&chain(&[factor]), 3, &options).unwrap().largest.0;
+    let hooks = &mut Hooks::default();
+    let best = best_load_for_life(&chain(&[1.0]), &solver(3), &options, (0.2, 3.0), hooks).unwrap();
+    let largest = move |factor: f64| run(&chain(&[factor]), 3, &options).unwrap().largest.0;
+    (best, largest)
+}
+
+/// Against a scan of lives at many factors.
+#[test]
+fn the_best_load_for_a_life_is_that_of_a_scan() {
+    let wear = wear(&[0.02]);
+    let (best, largest) = best_of(&wear);
     let scanned = (0..25).map(|i| best.factor * (0.9 + 0.2 * f64::from(i) / 24.0));
     let least = scanned.map(largest).fold(f64::INFINITY, f64::min);
     assert!(best.amplitude <= least * (1.0 + 1e-6), "{best:?} against {least}");
@@ -471,20 +478,8 @@ fn a_search_of_loads_without_a_peak_is_an_error() {
 #[test]
 #[ignore = "two hundred lives; tests/deep.sh runs it"]
 fn the_best_load_for_a_life_is_that_of_two_hundred_lives() {
-    let model = chain(&[1.0]);
-    let options = LifeOptions {
-        wear: &wear(&[0.02]),
-        stiffness: &[1.0],
-        follow: LifeFollow::Peak {
-            omega_start: 0.6,
-            omega_stop: 2.0,
-        },
-        cycles: &[8.0],
-        tolerance: 1e-6,
-        ..LifeOptions::default()
-    };
-    let best = best_load_for_life(&model, &solver(3), &options, (0.2, 3.0), &mut Hooks::default()).unwrap();
-    let largest = |factor: f64| run(&chain(&[factor]), 3, &options).unwrap().largest.0;
+    let wear = wear(&[0.02]);
+    let (best, largest) = best_of(&wear);
     // A hundred over the whole range, and a hundred next to the best one, 1e-4 from each other.
     let wide: Vec<f64> = (0..100)
         .map(|i| largest(0.2 * 15.0_f64.powf(f64::from(i) / 99.0)))

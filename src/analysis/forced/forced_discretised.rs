@@ -37,10 +37,6 @@ use crate::results::{Branch, Resolution, SpecialKind, Verdict};
 use crate::tracing::branch_recorder::{BranchRecorder, Ending};
 use num_complex::Complex64;
 
-/// Degrees of freedom up to which the points of a linear response, which are few, are factorised where small structures are.
-/// Kind: tuned; measured on: not recorded.
-const FACTORISE_UP_TO: usize = 1000;
-
 /// Distance of two solutions that are one, over their size.
 /// Kind: tuned; measured on: not recorded.
 const KNOWN: f64 = 1e-6;
@@ -52,8 +48,6 @@ struct LinearResponse<'a> {
     equations: Option<(usize, Box<Equations<'a>>)>,
     /// Frequency of the point solved last.
     solved: Option<f64>,
-    /// Whether sums over modes are not accurate enough.
-    accurate: bool,
 }
 
 impl<'a> LinearResponse<'a> {
@@ -62,7 +56,6 @@ impl<'a> LinearResponse<'a> {
             levels,
             equations: None,
             solved: None,
-            accurate: false,
         }
     }
 
@@ -511,7 +504,6 @@ impl LinearParts for ForcedDiscretised<'_> {
         let needed = condensed.coordinates() > 0
             && condensed.reference() == Reference::Complex
             && self.model.structure().is_damped();
-        let factorised = self.linear_response.accurate || condensed.ndof() <= FACTORISE_UP_TO;
         let own = self.linear_response.equations(needed, index, |resolution| {
             Equations::new(resolution, &self.settings, (&[], response), None, self.interrupt)
         });
@@ -519,22 +511,18 @@ impl LinearParts for ForcedDiscretised<'_> {
         let current = &mut *self.resolutions.current;
         self.state.stale = true;
         let Some(own) = own? else {
-            let found = current.linear_at(settings, (near, parameter), factorised, interrupt)?;
+            let found = current.linear_at(settings, (near, parameter), interrupt)?;
             self.state.stale = found.is_none();
             return Ok(found);
         };
         let (to, from) = (&current.resolution.condensed, &own.resolution.condensed);
         let start = transferred_point(near, to, from, 1, true)?;
-        let found = own.linear_at(settings, (&start, parameter), factorised, interrupt)?;
+        let found = own.linear_at(settings, (&start, parameter), interrupt)?;
         self.linear_response.solved = found.is_some().then_some(parameter);
         match found {
             Some(point) => transferred_point(&point, from, to, 1, true).map(Some),
             None => Ok(None),
         }
-    }
-
-    fn set_accurate(&mut self, accurate: bool) {
-        self.linear_response.accurate = accurate;
     }
 
     fn linear_share(&mut self, point: &Point) -> Result<f64> {
@@ -628,20 +616,16 @@ impl Recorder for ForcedDiscretised<'_> {
         Ok(())
     }
 
-    /// Solves the point once more at its frequency with a factorised flexibility, since along the sweep this may be a
-    /// sum over modes. At a fold the solution at a fixed frequency is not isolated.
+    /// Solves the point once more at its frequency, to round-off. At a fold the solution at a fixed frequency is not isolated.
     fn sharpen(&mut self, kind: SpecialKind, point: &mut Point) -> Result<()> {
         self.state.stale = false;
         let Equations { problem, corrector, .. } = &mut *self.resolutions.current;
         let mut found = None;
         let accurate = self.linear_response.solved == Some(point.parameter());
-        // The peaks of many responses are as exact as the sweep, whose sums have eleven digits.
+        // The peaks of many responses are as exact as the sweep.
         let is_further = kind.response().is_some_and(|response| response > 0);
         if !kind.is_fold() && !accurate && !is_further {
-            problem.set_pointwise(true);
-            let resolved = resolve(problem, corrector, &self.settings, point, true, self.interrupt);
-            problem.set_pointwise(false);
-            found = resolved?;
+            found = resolve(problem, corrector, &self.settings, point, true, self.interrupt)?;
         }
         if let Some(found) = found {
             point.v = found.v;

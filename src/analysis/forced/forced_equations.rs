@@ -7,7 +7,6 @@ use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::options::Range;
 use crate::options::Response;
-use crate::problem::Problem;
 use crate::problem::harmonic_balance::HarmonicBalance;
 use crate::results::{Record, Resolution, SeenWithError};
 use num_complex::Complex64;
@@ -27,13 +26,10 @@ impl<'a> Equations<'a> {
         &mut self,
         settings: &Settings,
         (near, omega): (&Point, f64),
-        factorised: bool,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Point>> {
         let Self { problem, corrector, .. } = self;
-        problem.set_factorised(factorised);
         let found = solve_linear(problem, corrector, settings, near, omega, interrupt);
-        problem.set_factorised(false);
         Ok(found?.filter(|_| problem.forces().all_linear()))
     }
 

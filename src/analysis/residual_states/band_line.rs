@@ -2,6 +2,7 @@
 
 use crate::analysis::residual_states::held_sliders::{HeldSliders, HeldState};
 use crate::error::{Result, try_push};
+use crate::roots::Bracket;
 
 const CONTEXT: &str = "the states of a band";
 
@@ -237,24 +238,18 @@ impl LineWalk<'_, '_> {
         self.between(&half, b, halvings - 1, all)
     }
 
-    /// The state between two others at which the slope of the result is zero, by the Illinois method.
+    /// The state between two others at which the slope of the result is zero.
     fn extremum(&mut self, a: &HeldState, b: &HeldState) -> Result<Option<HeldState>> {
-        let (mut low, mut high) = ((a.places[0], a.gradient[0]), (b.places[0], b.gradient[0]));
+        let mut bracket = Bracket::between((a.places[0], a.gradient[0]), (b.places[0], b.gradient[0]));
         let mut found: Option<HeldState> = None;
         let mut from = a.clone();
         for _ in 0..MOST_SECANTS {
-            let place = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+            let place = bracket.guess();
             let Some(next) = self.solve(place, &from)? else {
                 return Ok(found);
             };
             let slope = next.gradient[0];
-            let settled = (place - from.places[0]).abs() <= BAND_LINE_SETTLED * self.width || slope == 0.0;
-            if slope * high.1 < 0.0 {
-                low = high;
-            } else {
-                low.1 *= 0.5;
-            }
-            high = (place, slope);
+            let settled = slope == 0.0 || bracket.narrow(place, slope) <= BAND_LINE_SETTLED * self.width;
             from = next.clone();
             found = Some(next);
             if settled {

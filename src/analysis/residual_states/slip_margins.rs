@@ -7,10 +7,11 @@
 use crate::analysis::residual_states::stuck_contacts::StuckSlider;
 use crate::condense::Condensed;
 use crate::contact::forms::constants::Constant;
-use crate::error::{Result, try_push, try_vec};
+use crate::error::{Error, Result, try_push, try_vec};
 use crate::fourier::{HarmonicSet, TurningPoints, jet};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
+use crate::roots::least;
 use std::f64::consts::TAU;
 
 const CONTEXT: &str = "the margins of sliders";
@@ -19,9 +20,9 @@ const CONTEXT: &str = "the margins of sliders";
 /// Kind: tuned; measured on: not recorded.
 const SLIP_MARGINS_TIMES_PER_WAVE: usize = 16;
 
-/// Golden sections of a minimum between two times.
-/// Kind: cap.
-const SECTIONS: usize = 60;
+/// Width, over the step of the samples, at which a minimum between two times is found.
+/// Kind: rounding.
+const SECTION_WIDTH: f64 = 1e-12;
 
 /// A condition margin ≥ 0 that a sticking contact must meet.
 #[derive(Clone, Debug)]
@@ -196,17 +197,8 @@ fn in_plane(signals: &Signals<'_>, interrupt: &Interrupt<'_>) -> Result<Vec<(f64
         if value > before || value > after {
             continue;
         }
-        let (mut low, mut high) = (step * (i as f64 - 1.0), step * (i as f64 + 1.0));
-        for _ in 0..SECTIONS {
-            let width = 0.618_033_988_749_895 * (high - low);
-            let (left, right) = (high - width, low + width);
-            if signals.margin(left) < signals.margin(right) {
-                high = right;
-            } else {
-                low = left;
-            }
-        }
-        let tau = 0.5 * (low + high);
+        let around = [step * (i as f64 - 1.0), step * (i as f64 + 1.0)];
+        let tau = least(around, SECTION_WIDTH * step, |tau| Ok::<_, Error>(signals.margin(tau)))?;
         let force = [0, 1].map(|k| jet(set, &signals.force[k], tau).x);
         let size = force[0].hypot(force[1]);
         if size == 0.0 {

@@ -83,7 +83,6 @@ fn computed(
     let forced = under_force(peak.condensed, &load.force, damping, 2.0 * load.ratio * state.omega)?;
     let range = Range::new((omega - width).max(0.1 * omega), omega + width);
     let mut problem = HarmonicBalance::new(&forced, peak.response_dof, range, peak.samples, None, interrupt)?;
-    problem.set_factorised(true);
     let n = forced.unknowns();
     let settings = |range: Range| Settings {
         start: range.start,

@@ -117,12 +117,6 @@ impl HarmonicBlock {
         }
     }
 
-    /// Whether this block and another one hold their matrices in the same memory.
-    pub fn shares_matrices(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.matrices.reference, &other.matrices.reference)
-            && Arc::ptr_eq(&self.matrices.mass, &other.matrices.mass)
-    }
-
     /// K_h of the structure itself, without any spring and without the loss in a complex stiffness, at the entries of the pattern.
     pub fn own_stiffness(&self, model: &Model) -> Result<Vec<Complex64>> {
         let Some(view) = &self.view else {

@@ -10,7 +10,6 @@ pub(crate) mod mode_sums;
 pub(crate) mod quadratic_poles;
 pub(crate) mod refined_modes;
 pub(crate) mod single_contact;
-pub(crate) mod single_contact_lanes;
 pub(crate) mod sum_terms;
 pub mod wave_cache;
 pub mod wave_modes;

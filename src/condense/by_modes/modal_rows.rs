@@ -6,7 +6,7 @@
 //!
 //! > Σ l rᴴ/(a − b μ) = Σ_j zʲ S_j/a,  z = b/a,  S_j = Σ μʲ l rᴴ,  |z μ| ≤ 1/8,
 //!
-//! so that a sum within a tolerance takes the other modes alone. The matrices are made when a sum first needs them.
+//! so that a sum takes the other modes alone. The matrices are made when a sum first needs them.
 
 #![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
 
@@ -14,7 +14,6 @@ use crate::condense::by_modes::sum_terms::{Denominator, Source};
 use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, try_push, try_vec};
 use crate::linalg::libraries::{Accum, Arch, MatMut, MatRef, Par, Simd, WithSimd, cast_slice, matmul};
-use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::few_motions::reduced_wave::MotionRow;
 use num_complex::Complex64;
 use std::sync::{Arc, OnceLock};
@@ -33,6 +32,10 @@ const SOFT: [usize; 2] = [36, 108];
 /// Kind: tuned; measured on: not recorded.
 const MANY: usize = 2;
 
+/// Rows from which a series takes less time than its modes one by one.
+/// Kind: tuned; measured on: not recorded.
+const SERIES_FROM: usize = 8;
+
 /// Rows up to which a series is used: the matrices of more would take too much memory.
 /// Kind: cap.
 const MOST_ROWS: usize = 200;
@@ -40,10 +43,6 @@ const MOST_ROWS: usize = 200;
 /// |σ μ| of the stiff modes.
 /// Kind: tuned; measured on: not recorded.
 const STIFF: f64 = 0.125;
-
-/// Error of a series over the tolerance.
-/// Kind: tuned; measured on: not recorded.
-const MODAL_ROWS_SHARE: f64 = 0.1;
 
 /// Most terms of a series: with them it has the digits of a number.
 /// Kind: cap.
@@ -60,8 +59,6 @@ const MODAL_ROWS_ENTRIES: usize = 256;
 /// Rows of contacts, response, springs and dampers of one wave, multiplied with its modes or poles.
 pub struct ModalRows {
     source: Source,
-    /// Z_κ at zero frequency and M of the block for which these rows were made.
-    matrices: (Arc<Csc>, Arc<Vec<Complex64>>),
     /// Motion of the next sector over that of this sector. Waves of real matrices may share their modes and differ in
     /// this factor.
     next: Complex64,
@@ -76,15 +73,6 @@ pub struct ModalRows {
     adjoint: Vec<Complex64>,
     /// Sums S_j of the series over stiff modes, for each number of soft modes that stay outside of it.
     stiff: [[OnceLock<Vec<Complex64>>; MOST_TERMS]; SOFT.len()],
-}
-
-/// Number of terms of a series that meets a relative tolerance; 0 for a tolerance of 0: all modes are then summed.
-pub fn terms_within(tolerance: f64) -> usize {
-    if tolerance > 0.0 {
-        (((MODAL_ROWS_SHARE * tolerance).ln() / STIFF.ln()).ceil() as usize).min(MOST_TERMS)
-    } else {
-        0
-    }
 }
 
 impl ModalRows {
@@ -133,7 +121,6 @@ impl ModalRows {
             Source::Poles(_) => seen(adjoints)?,
         };
         Ok(Self {
-            matrices: (Arc::clone(&block.matrices.reference), Arc::clone(&block.matrices.mass)),
             next: block.next,
             coordinates,
             rows,
@@ -163,18 +150,6 @@ impl ModalRows {
     /// Modes or poles in which the rows are expressed.
     pub fn source(&self) -> &Source {
         &self.source
-    }
-
-    /// Whether the matrices of a block are those for which these rows were made, in the same memory.
-    pub fn are_of_block(&self, block: &HarmonicBlock) -> bool {
-        let of_block = match &self.source {
-            Source::Modes(_) => true,
-            Source::Poles(poles) => poles.key.tied.is_none_or(|number| number == block.number),
-        };
-        of_block
-            && self.next == block.next
-            && Arc::ptr_eq(&self.matrices.0, &block.matrices.reference)
-            && Arc::ptr_eq(&self.matrices.1, &block.matrices.mass)
     }
 
     /// Springs with rows of their own.
@@ -231,15 +206,9 @@ impl ModalRows {
         }
     }
 
-    /// out ← the sum over the stiff modes by a series of `terms` terms (0: all modes are summed one by one), and
-    /// slope ← its derivative if there is memory for it. Returns the index of the first mode outside the series.
-    pub fn add_stiff(
-        &self,
-        at: Denominator,
-        terms: usize,
-        out: &mut [Complex64],
-        slope: Option<&mut [Complex64]>,
-    ) -> Result<usize> {
+    /// out ← the sum over the stiff modes by a series with the digits of a number, where that is quicker, and slope ← its derivative
+    /// if there is memory for it. Returns the index of the first mode outside the series.
+    pub fn add_stiff(&self, at: Denominator, out: &mut [Complex64], slope: Option<&mut [Complex64]>) -> Result<usize> {
         out.fill(Complex64::ZERO);
         let mut slope = slope;
         if let Some(slope) = &mut slope {
@@ -247,7 +216,7 @@ impl ModalRows {
         }
         let z = at.b / at.a;
         let (n, size) = (self.source.len(), z.norm());
-        if terms == 0 || self.rows > MOST_ROWS {
+        if !(SERIES_FROM..=MOST_ROWS).contains(&self.rows) {
             return Ok(0);
         }
         // |μ| rises.
@@ -258,8 +227,8 @@ impl ModalRows {
         let first = n - SOFT[split];
         // So many terms suffice at the end of the range of a series.
         let ratio = size * self.source.value(first - 1).norm();
-        let enough = (terms as f64 * (STIFF.ln() / ratio.max(f64::MIN_POSITIVE).ln())).ceil() as usize;
-        let terms = terms.min(enough.max(1));
+        let enough = (MOST_TERMS as f64 * (STIFF.ln() / ratio.max(f64::MIN_POSITIVE).ln())).ceil() as usize;
+        let terms = enough.clamp(1, MOST_TERMS);
         let mut sums = [&[][..]; MOST_TERMS];
         let (mut factors, mut slopes) = ([Complex64::ZERO; MOST_TERMS], [Complex64::ZERO; MOST_TERMS]);
         // zʲ/a and its derivative, with ∂z = (∂b − z ∂a)/a.

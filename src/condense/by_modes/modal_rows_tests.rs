@@ -15,7 +15,7 @@ use crate::options::SolverOptions;
 const N: usize = 150;
 const RESPONSE: usize = 7;
 
-/// A chain between walls with sliders at four masses, one of which never slips, damped by stiffness.
+/// A chain between walls with sliders at eight masses, one of which never slips, damped by stiffness.
 fn chain() -> (Model, Condensed) {
     let mut model = Model::new(N).unwrap();
     let dense = |entry: &dyn Fn(usize, usize) -> f64| -> Vec<f64> { (0..N * N).map(|k| entry(k % N, k / N)).collect() };
@@ -25,7 +25,8 @@ fn chain() -> (Model, Condensed) {
         model.set_matrix(kind, &MatrixView::dense(N, &values)).unwrap();
     }
     model.set_rayleigh(0.0, 0.05).unwrap();
-    for (dof, limit) in [(0, 1.0), (40, 1.0), (41, f64::INFINITY), (149, 1.0)] {
+    for dof in [0, 20, 40, 41, 60, 80, 100, 149] {
+        let limit = if dof == 41 { f64::INFINITY } else { 1.0 };
         model
             .add_contact(&Contact::jenkins(dof, None, 0.4, 0.3, limit))
             .unwrap();
@@ -40,47 +41,34 @@ fn chain() -> (Model, Condensed) {
     (model, condensed)
 }
 
-fn table(model: &Model, condensed: &Condensed, i: usize, tolerance: f64) -> ModalTable {
+fn table(model: &Model, condensed: &Condensed, i: usize) -> ModalTable {
     let modes = WaveCache::default().of(model, condensed, i, &Interrupt::none());
     let rows = ModalRows::new((condensed, i, RESPONSE), modes.unwrap().ok().unwrap());
-    ModalTable::new((condensed, i), Arc::new(rows.unwrap()), tolerance).unwrap()
+    ModalTable::new((condensed, i), Arc::new(rows.unwrap())).unwrap()
 }
 
 #[test]
-fn a_series_over_the_stiff_modes_is_the_sum_within_its_tolerance() {
+fn a_series_over_the_stiff_modes_has_the_digits_of_the_sum() {
     let (model, condensed) = chain();
     let interrupt = Interrupt::none();
     let mut direct = Workspace::new(&condensed, Some(RESPONSE)).unwrap();
     let (mut work, mut found) = (ModalWork::default(), Table::new(condensed.coordinates()).unwrap());
     let mut firsts = Vec::new();
     for i in (0..condensed.blocks().len()).filter(|&i| condensed.blocks()[i].number > 0) {
-        for tolerance in [1e-4, 1e-7, 1e-11] {
-            let by_series = table(&model, &condensed, i, tolerance);
-            for omega in [0.01, 0.03, 0.1, 0.2, 0.35] {
-                assert!(
-                    by_series
-                        .evaluate((omega, false), &mut work, &mut found, &interrupt)
-                        .unwrap()
-                );
-                let exact = &direct.evaluate(&condensed, i, omega, false, &interrupt).unwrap().value;
-                let size = |z: &mut dyn Iterator<Item = Complex64>| z.map(|z| z.norm_sqr()).sum::<f64>().sqrt();
-                let off = size(&mut found.value.iter().zip(exact).map(|(a, b)| a - b));
-                let off = off / size(&mut exact.iter().copied());
-                assert!(off <= tolerance, "block {i} at {omega}: {off:e} for {tolerance:e}");
-                let nu = omega * condensed.blocks()[i].number as f64;
-                let mut out = vec![Complex64::ZERO; by_series.rows().count().pow(2)];
-                firsts.push(
-                    by_series
-                        .rows()
-                        .add_stiff(
-                            by_series.rows().source().denominator(1.0, nu),
-                            terms_within(tolerance),
-                            &mut out,
-                            None,
-                        )
-                        .unwrap(),
-                );
-            }
+        let by_series = table(&model, &condensed, i);
+        for omega in [0.01, 0.03, 0.1, 0.2, 0.35] {
+            let evaluated = by_series.evaluate((omega, false), &mut work, &mut found, &interrupt);
+            assert!(evaluated.unwrap());
+            let exact = &direct.evaluate(&condensed, i, omega, false, &interrupt).unwrap().value;
+            let size = |z: &mut dyn Iterator<Item = Complex64>| z.map(|z| z.norm_sqr()).sum::<f64>().sqrt();
+            let off = size(&mut found.value.iter().zip(exact).map(|(a, b)| a - b));
+            let off = off / size(&mut exact.iter().copied());
+            assert!(off <= 1e-11, "block {i} at {omega}: {off:e}");
+            let nu = omega * condensed.blocks()[i].number as f64;
+            let rows = &by_series.rows;
+            let mut out = vec![Complex64::ZERO; rows.count().pow(2)];
+            let first = rows.add_stiff(rows.source().denominator(1.0, nu), &mut out, None);
+            firsts.push(first.unwrap());
         }
     }
     // Each number of soft modes was met that the structure allows, and the exact sum.

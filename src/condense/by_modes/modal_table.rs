@@ -6,7 +6,7 @@
 use crate::condense::Condensed;
 use crate::condense::by_factors::flexibility::Table;
 use crate::condense::by_modes::low_rank::{Coefficients, LowRank, Plain};
-use crate::condense::by_modes::modal_rows::{ModalRows, terms_within};
+use crate::condense::by_modes::modal_rows::ModalRows;
 use crate::condense::by_modes::single_contact::{Denominators, SingleContact};
 use crate::condense::by_modes::sum_terms::{Denominator, Frequency, Source};
 use crate::condense::by_modes::wave_modes::{NEAR_ALONE, NEAR_RESONANCE};
@@ -18,16 +18,10 @@ use std::sync::Arc;
 
 const CONTEXT: &str = "the flexibility from modes";
 
-/// Rows from which a series over the stiff modes with all digits takes less time than their sum.
-/// Kind: tuned; measured on: not recorded.
-const EXACT_SERIES: usize = 8;
-
 /// Flexibility table of one harmonic from the modes or poles of its wave.
 pub struct ModalTable {
     pub(crate) rows: Arc<ModalRows>,
     number: f64,
-    /// Number of terms of the series over stiff modes; 0 where all modes are summed one by one.
-    terms: usize,
     pub(crate) coefficients: Coefficients,
     /// Product of the excitation with the adjoint shapes, and that of the forces which grow with ω², over ω²; empty
     /// without such forces.
@@ -35,17 +29,6 @@ pub struct ModalTable {
     unbalance: Vec<Complex64>,
     /// Closed sums for one contact without springs, where the harmonic has no more; else `None`.
     single: Option<SingleContact>,
-}
-
-/// The data of a table of one contact without springs.
-pub struct SinglePart<'a> {
-    pub contact: &'a SingleContact,
-    pub coefficients: &'a Coefficients,
-    pub number: f64,
-    /// Factors α and β of proportional damping αM + βK.
-    pub proportional: (f64, f64),
-    /// Loss factor η of the structure.
-    pub loss_factor: f64,
 }
 
 /// Work space for the tables of one structure, one after the other; made when a table first needs it.
@@ -106,12 +89,11 @@ impl Work {
 }
 
 impl ModalTable {
-    /// The table of the i-th carried harmonic from the rows of its wave, within a relative tolerance; 0: as exact as
-    /// rounding allows.
+    /// The table of the i-th carried harmonic from the rows of its wave.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new((condensed, i): (&Condensed, usize), rows: Arc<ModalRows>, tolerance: f64) -> Result<Self> {
+    pub fn new((condensed, i): (&Condensed, usize), rows: Arc<ModalRows>) -> Result<Self> {
         let block = &condensed.blocks()[i];
         let force = rows.forced(&block.load.force)?;
         let unbalance = rows.forced(block.load.unbalance.as_deref().unwrap_or(&[]))?;
@@ -125,36 +107,12 @@ impl ModalTable {
         };
         Ok(Self {
             number: block.number as f64,
-            terms: if tolerance > 0.0 || rows.count() < EXACT_SERIES {
-                terms_within(tolerance)
-            } else {
-                terms_within(f64::EPSILON)
-            },
             coefficients,
             force,
             unbalance,
             single,
             rows,
         })
-    }
-
-    /// The data of the table where the harmonic has a single contact without springs, else `None`.
-    pub(crate) fn single(&self) -> Option<SinglePart<'_>> {
-        let Source::Modes(modes) = self.rows.source() else {
-            return None;
-        };
-        self.single.as_ref().map(|contact| SinglePart {
-            contact,
-            coefficients: &self.coefficients,
-            number: self.number,
-            proportional: modes.proportional,
-            loss_factor: modes.loss_factor,
-        })
-    }
-
-    /// Rows of the wave in its modes or poles.
-    pub fn rows(&self) -> Arc<ModalRows> {
-        Arc::clone(&self.rows)
     }
 
     /// Evaluates H at `omega`, and ∂H/∂ω if `slopes`; without these, [`Self::slope_along`] gives the derivative along
@@ -260,7 +218,7 @@ impl ModalTable {
             work.d_plain = try_vec(work.plain.len(), Complex64::ZERO, CONTEXT)?;
         }
         let slope = slopes.then_some(&mut work.d_plain[..]);
-        let soft = self.rows.add_stiff(at, self.terms, &mut work.plain, slope)?;
+        let soft = self.rows.add_stiff(at, &mut work.plain, slope)?;
         self.rows.add(soft, &work.inverse, &mut work.weighted, &mut work.plain);
         if slopes {
             self.rows.add(soft, &work.slopes, &mut work.weighted, &mut work.d_plain);

@@ -20,7 +20,7 @@ fn condensed(model: &Model, reference: Reference) -> Condensed {
 
 fn table_of(condensed: &Condensed, i: usize, source: Source) -> ModalTable {
     let rows = ModalRows::new((condensed, i, 4), source).unwrap();
-    ModalTable::new((condensed, i), Arc::new(rows), 0.0).unwrap()
+    ModalTable::new((condensed, i), Arc::new(rows)).unwrap()
 }
 
 #[test]
@@ -85,7 +85,7 @@ fn shared_rows_of_waves_with_the_same_real_matrices_are_their_own() {
         for i in 0..condensed.blocks().len() {
             let modes = waves.of(&model, &condensed, i, &Interrupt::none()).unwrap().unwrap();
             let rows = waves.rows((&condensed, i, 1), modes).unwrap();
-            let by_modes = ModalTable::new((&condensed, i), rows, 0.0).unwrap();
+            let by_modes = ModalTable::new((&condensed, i), rows).unwrap();
             let mut table = Table::new(condensed.coordinates()).unwrap();
             let work = &mut ModalWork::default();
             assert!(

@@ -20,8 +20,6 @@ use std::sync::Arc;
 pub struct ModeFlexibility {
     coordinates: usize,
     reference_dof: usize,
-    /// Largest relative deviation of sums from a factorisation.
-    deviation: f64,
     /// Per harmonic the sums over modes, where they are used, with the index of its wave.
     sums: Vec<Option<(ModeSums, usize)>>,
     /// Per wave, whether its sums agreed with a factorisation.
@@ -64,12 +62,11 @@ const BESIDE: f64 = 64.0 * f64::EPSILON;
 const CONTEXT: &str = "the flexibility of a mode";
 
 impl ModeFlexibility {
-    /// Memory for a condensed model whose normalisation reads the independent degree of freedom `reference_dof`, with
-    /// the flexibility within a relative tolerance; 0: as exact as rounding allows.
+    /// Memory for a condensed model whose normalisation reads the independent degree of freedom `reference_dof`.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(condensed: &Condensed, reference_dof: usize, tolerance: f64) -> Result<Self> {
+    pub fn new(condensed: &Condensed, reference_dof: usize) -> Result<Self> {
         let (n, coordinates) = (condensed.ndof(), condensed.coordinates());
         let zeros = |len| try_vec(len, Complex64::ZERO, CONTEXT);
         let (mut sums, mut agree, mut waves) = (Vec::new(), Vec::new(), Vec::<Arc<ModalRows>>::new());
@@ -88,7 +85,7 @@ impl ModeFlexibility {
                         try_push(&mut waves, Arc::new(rows), CONTEXT)?;
                         try_push(&mut agree, false, CONTEXT)?;
                     }
-                    ModeSums::new((condensed, i), Arc::clone(&waves[wave]), tolerance)?.map(|sums| (sums, wave))
+                    ModeSums::new((condensed, i), Arc::clone(&waves[wave]))?.map(|sums| (sums, wave))
                 }
                 _ => None,
             };
@@ -97,7 +94,6 @@ impl ModeFlexibility {
         Ok(Self {
             coordinates,
             reference_dof,
-            deviation: DEVIATION.max(tolerance),
             sums,
             agree,
             work: None,
@@ -176,11 +172,11 @@ impl ModeFlexibility {
         let parts = |of: &[Complex64], k: usize| of[k * coordinates..(k + 1) * coordinates].to_vec();
         for k in 0..3 {
             let (by_sums, plain) = (parts(&self.relative, k), parts(&relative, k));
-            if off(&by_sums, &plain) > self.deviation {
+            if off(&by_sums, &plain) > DEVIATION {
                 direct.refine((condensed, i), at, k, interrupt)?;
                 direct.read((condensed, i), &mut value, &mut relative);
                 let refined = parts(&relative, k);
-                if off(&by_sums, &refined) > self.deviation.max(BEYOND_ITS_ERROR * off(&plain, &refined)) {
+                if off(&by_sums, &refined) > DEVIATION.max(BEYOND_ITS_ERROR * off(&plain, &refined)) {
                     return Ok(false);
                 }
             }
@@ -189,12 +185,12 @@ impl ModeFlexibility {
         let Some(worst) = (0..coordinates).max_by(|a, b| deviation(*a).total_cmp(&deviation(*b))) else {
             return Ok(true);
         };
-        if deviation(worst) > self.deviation {
+        if deviation(worst) > DEVIATION {
             let plain = parts(&value, worst);
             direct.refine_column((condensed, i), at, worst, interrupt)?;
             direct.read((condensed, i), &mut value, &mut relative);
             let (by_sums, refined) = (parts(&self.value, worst), parts(&value, worst));
-            return Ok(off(&by_sums, &refined) <= self.deviation.max(BEYOND_ITS_ERROR * off(&plain, &refined)));
+            return Ok(off(&by_sums, &refined) <= DEVIATION.max(BEYOND_ITS_ERROR * off(&plain, &refined)));
         }
         Ok(true)
     }

@@ -25,7 +25,7 @@ fn compare(model: &Model, form: DampingForm, (harmonics, allowed): (usize, f64),
         .attach(model, direct.clone(), &Interrupt::none())
         .unwrap();
     assert!(quick.blocks().iter().all(|b| b.source.is_some()), "{case}");
-    let [mut by_sums, mut exact] = [&quick, &direct].map(|c| ModeFlexibility::new(c, reference_dof, 0.0).unwrap());
+    let [mut by_sums, mut exact] = [&quick, &direct].map(|c| ModeFlexibility::new(c, reference_dof).unwrap());
     let w: Vec<Complex64> = (0..direct.coordinates())
         .map(|c| Complex64::new(1.0 - c as f64, 0.4))
         .collect();

@@ -15,7 +15,7 @@
 
 use crate::condense::by_factors::flexibility::Table;
 use crate::condense::by_modes::low_rank::{Coefficients, LowRank, Plain};
-use crate::condense::by_modes::modal_rows::{ModalRows, terms_within};
+use crate::condense::by_modes::modal_rows::ModalRows;
 use crate::condense::by_modes::sum_terms::{Denominator, Factors, Source};
 use crate::condense::by_modes::wave_modes::{NEAR_MODE, WaveModes};
 use crate::condense::{Artificial, Condensed};
@@ -29,10 +29,6 @@ use std::sync::Arc;
 
 const CONTEXT: &str = "the flexibility of a mode";
 
-/// Rows from which a series over the stiff modes with all digits takes less time than their sum.
-/// Kind: tuned; measured on: not recorded.
-const SERIES_FROM: usize = 8;
-
 /// Sums over the modes of its wave for one harmonic of a nonlinear mode.
 pub(crate) struct ModeSums {
     rows: Arc<ModalRows>,
@@ -40,8 +36,6 @@ pub(crate) struct ModeSums {
     number: f64,
     is_mass_type: bool,
     coefficients: Coefficients,
-    /// Number of terms of the series over stiff modes.
-    terms: usize,
     /// Largest length of a row of Φ.
     longest_row: f64,
 }
@@ -109,13 +103,12 @@ impl SumWork {
 }
 
 impl ModeSums {
-    /// Sums for the i-th carried harmonic with the rows of its wave and the flexibility within a relative tolerance;
-    /// 0: as exact as rounding allows. `None` where the rows belong to poles, which would depend on the damping
-    /// ratio.
+    /// Sums for the i-th carried harmonic with the rows of its wave. `None` where the rows belong to poles, which would
+    /// depend on the damping ratio.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new((condensed, i): (&Condensed, usize), rows: Arc<ModalRows>, tolerance: f64) -> Result<Option<Self>> {
+    pub fn new((condensed, i): (&Condensed, usize), rows: Arc<ModalRows>) -> Result<Option<Self>> {
         let Source::Modes(modes) = rows.source() else {
             return Ok(None);
         };
@@ -129,11 +122,6 @@ impl ModeSums {
             longest_row: longest_row(&modes),
             is_mass_type,
             modes,
-            terms: if rows.count() < SERIES_FROM {
-                0
-            } else {
-                terms_within(tolerance.max(f64::EPSILON))
-            },
             rows,
         }))
     }
@@ -353,7 +341,7 @@ impl ModeSums {
     /// Computes T′ and, with the low-rank term, the flexibility.
     fn flexibility(&self, work: &mut SumWork, interrupt: &Interrupt<'_>) -> Result<()> {
         let (rows, outputs) = (self.rows.count(), self.rows.coordinates() + 1);
-        let soft = self.rows.add_stiff(work.at, self.terms, &mut work.plain, None)?;
+        let soft = self.rows.add_stiff(work.at, &mut work.plain, None)?;
         self.rows.add(soft, &work.inverse, &mut work.weighted, &mut work.plain);
         for (to, from) in work
             .table

@@ -68,7 +68,7 @@ fn check(model: &Model, reference: Reference) -> usize {
         let found = poles(&condensed, i, &interrupt).unwrap().unwrap();
         assert!(are_of(&found, &condensed.blocks()[i]));
         let rows = ModalRows::new((&condensed, i, RESPONSE), Source::Poles(Arc::new(found))).unwrap();
-        let by_poles = ModalTable::new((&condensed, i), Arc::new(rows), 0.0).unwrap();
+        let by_poles = ModalTable::new((&condensed, i), Arc::new(rows)).unwrap();
         let (mut work, mut table) = (ModalWork::default(), Table::new(condensed.coordinates()).unwrap());
         for omega in [0.05, 0.4, 1.0, 1.3, 2.7, 9.0] {
             assert!(

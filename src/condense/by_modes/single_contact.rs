@@ -17,11 +17,11 @@ const SINGLE_CONTACT_ENTRIES: usize = 4;
 type Entries = [[f64; SINGLE_CONTACT_ENTRIES]; 2];
 
 /// A mode as one contact and the response see it.
-pub struct Mode {
+struct Mode {
     /// Eigenvalue μ of the mode.
-    pub value: f64,
+    value: f64,
     /// For each entry of the table, the product of output and input of the mode.
-    pub products: Entries,
+    products: Entries,
 }
 
 /// The modes of a wave as one contact and the response see them.
@@ -67,20 +67,15 @@ impl SingleContact {
         })
     }
 
-    /// The modes of the wave.
-    pub fn modes(&self) -> &[Mode] {
-        &self.modes
-    }
-
-    /// Whether the excitation moves some mode.
-    pub fn is_forced(&self) -> bool {
-        self.is_forced
-    }
-
     /// Computes the table and its slope with the low-rank term, whose coefficient is e with derivative ∂e. Returns
     /// `false` where a denominator is small.
     pub fn evaluate(&self, by: Denominators, (e, d_e): (Complex64, Complex64), table: &mut Table) -> bool {
-        let Some([t, d_t]) = self.arch.dispatch(Sum(&self.modes, by)) else {
+        let sums = if self.is_forced {
+            self.arch.dispatch(Sum::<SINGLE_CONTACT_ENTRIES>(&self.modes, by))
+        } else {
+            self.arch.dispatch(Sum::<2>(&self.modes, by))
+        };
+        let Some([t, d_t]) = sums else {
             return false;
         };
         let entry = |of: &Entries, k: usize, r: usize| Complex64::new(of[0][2 * k + r], of[1][2 * k + r]);
@@ -110,10 +105,10 @@ impl SingleContact {
     }
 }
 
-/// Sums over the modes and their derivatives; the result is `None` where a denominator is small.
-struct Sum<'a>(&'a [Mode], Denominators);
+/// Sums over the modes of the first N entries and their derivatives; the result is `None` where a denominator is small.
+struct Sum<'a, const N: usize>(&'a [Mode], Denominators);
 
-impl WithSimd for Sum<'_> {
+impl<const N: usize> WithSimd for Sum<'_, N> {
     type Output = Option<[Entries; 2]>;
 
     #[inline(always)]
@@ -133,7 +128,7 @@ impl WithSimd for Sum<'_> {
             for (sum, factor) in sums.iter_mut().zip([inverse, slope]) {
                 let [p_re, p_im] = &mode.products;
                 let [re, im] = sum;
-                for i in 0..SINGLE_CONTACT_ENTRIES {
+                for i in 0..N {
                     re[i] += p_re[i] * factor.re - p_im[i] * factor.im;
                     im[i] += p_re[i] * factor.im + p_im[i] * factor.re;
                 }

@@ -1,6 +1,8 @@
 //! Amplitudes at which a law ceases to be linear when it vibrates about a static motion.
 
+use crate::roots;
 use num_complex::Complex64;
+use std::convert::Infallible;
 use std::f64::consts::{PI, TAU};
 
 /// Factors a of a vibration y₀ + a·Re(Y e^{iτ}) at which something begins; infinite where it never does.
@@ -23,9 +25,9 @@ const BOTH: f64 = 1e-9;
 /// Kind: tuned; measured on: not recorded.
 const ONSET_POINTS: usize = 256;
 
-/// Bisections of the place of the earliest slip.
-/// Kind: cap.
-const ONSET_BISECTIONS: usize = 60;
+/// Width, as a phase, at which the place of the earliest slip is found.
+/// Kind: rounding.
+const ONSET_WIDTH: f64 = 1e-14;
 
 impl Onset {
     /// A law that is linear at every motion.
@@ -118,19 +120,9 @@ pub fn slider_in_plane(force: [f64; 2], limit: f64, of_force: [Complex64; 2], of
             least = (a, j as f64 * step);
         }
     }
-    let (mut low, mut high) = (least.1 - step, least.1 + step);
-    for _ in 0..ONSET_BISECTIONS {
-        // Golden section.
-        let (left, right) = (
-            high - 0.618_033_988_75 * (high - low),
-            low + 0.618_033_988_75 * (high - low),
-        );
-        if at(left) < at(right) {
-            high = right;
-        } else {
-            low = left;
-        }
-    }
-    let tau = 0.5 * (low + high);
+    let tau = roots::least([least.1 - step, least.1 + step], ONSET_WIDTH, |tau| {
+        Ok::<_, Infallible>(at(tau))
+    })
+    .unwrap_or(least.1);
     [least.0.min(at(tau)), at(tau + PI)]
 }

@@ -10,8 +10,9 @@
 //!
 //! where defect and excess, of the first order in the rate, are those of the solution before.
 
-use crate::error::{Result, fail, try_push};
+use crate::error::{Error, Result, fail, try_push};
 use crate::interrupt::{Interrupt, Phase};
+use crate::roots::root;
 use crate::studies::run_up::chirp::Chirp;
 use crate::studies::run_up::mode_table::{ModeTable, Oscillator, Place};
 use crate::studies::run_up::other_modes::OtherModes;
@@ -32,10 +33,6 @@ const SLOW_FLOW_LOOKS: usize = 6;
 /// Turns that are followed behind the end, for averages around it: the half turn of the memory, rounded up.
 /// Kind: fixed.
 const SLOW_FLOW_BEHIND: usize = 1;
-
-/// Halvings in the search for the amplitude of the first steady motion.
-/// Kind: cap; rounding ends them.
-const SLOW_FLOW_HALVINGS: usize = 200;
 
 const CONTEXT: &str = "the slow flow";
 
@@ -199,18 +196,9 @@ pub(crate) fn steady(table: &ModeTable, omega: f64) -> Result<Complex64> {
     for high in table.amplitudes().skip(1) {
         let (next, _) = excess(high)?;
         if next >= 0.0 {
-            let mut high = high;
-            for _ in 0..SLOW_FLOW_HALVINGS {
-                let middle = 0.5 * (low + high);
-                if middle <= low || middle >= high {
-                    break;
-                }
-                if excess(middle)?.0 < 0.0 {
-                    low = middle;
-                } else {
-                    high = middle;
-                }
-            }
+            let high = root((low, value), (high, next), |amplitude| {
+                Ok::<_, Error>(excess(amplitude)?.0)
+            })?;
             let (_, at) = excess(high)?;
             let q = at.force / at.stiffness(omega);
             return Ok(if q.norm() > 0.0 { q * (high / q.norm()) } else { q });

@@ -10,6 +10,7 @@ use crate::hooks::{Hooks, Progress};
 use crate::interrupt::Phase;
 use crate::model::Model;
 use crate::options::{LifeOptions, SolverOptions};
+use crate::roots::root;
 use crate::studies::wear::life_length::{Doubt, LIFE_TRIES, Refusals, growth, length_of};
 use crate::studies::wear::life_step::{LifeState, LifeStep, Taken, ahead};
 use crate::studies::wear::worn_state::{WornState, WornStates};
@@ -510,21 +511,9 @@ impl LifeWalk<'_> {
         let limit = self.options.limit;
         let (a, b) = (step.from.worn.amplitude - limit, step.to.worn.amplitude - limit);
         if limit > 0.0 && (a < 0.0) != (b < 0.0) {
-            let side = |n: f64| (step.amplitude(n) - limit < 0.0) == (a < 0.0);
-            let (mut low, mut high) = (from, to);
-            while high - low > 4.0 * f64::EPSILON * high {
-                let middle = 0.5 * (low + high);
-                if middle <= low || middle >= high {
-                    break;
-                }
-                if side(middle) {
-                    low = middle;
-                } else {
-                    high = middle;
-                }
-            }
+            let cycles = root((from, a), (to, b), |n| Ok::<_, Error>(step.amplitude(n) - limit))?;
             let event = LifeEvent {
-                cycles: high,
+                cycles,
                 kind: LifeEventKind::Limit,
                 contact: None,
             };

@@ -8,6 +8,7 @@ use crate::error::{Error, Result, Status, fail, try_push};
 use crate::hooks::{Hooks, Progress};
 use crate::model::Model;
 use crate::options::{LifeOptions, SolverOptions};
+use crate::roots::{Bracket, least};
 use crate::studies::wear::life::{Life, life};
 
 /// Lives over the range of factors that find the neighbourhood of the minimum.
@@ -159,30 +160,30 @@ impl LoadSearch<'_> {
         })
     }
 
-    /// The factor at which the new and the worn machine vibrate alike, by regula falsi that halves the weight of an
-    /// end that stays.
+    /// The factor at which the new and the worn machine vibrate alike.
     fn corner(&mut self, mut a: Tried, mut b: Tried, hooks: &mut Hooks<'_>) -> Result<Tried> {
-        let (mut fa, mut fb) = (a.difference(), b.difference());
+        let mut bracket = Bracket::between((a.factor, a.difference()), (b.factor, b.difference()));
         for _ in 0..LIVES_TO_CLOSE {
-            let share = fa / (fa - fb);
-            let middle = self.with(a.factor + share * (b.factor - a.factor), hooks)?;
+            let middle = self.with(bracket.guess(), hooks)?;
             let difference = middle.difference();
-            if difference < 0.0 {
-                (a, fa, fb) = (middle, difference, 0.5 * fb);
-            } else {
-                (b, fb, fa) = (middle, difference, 0.5 * fa);
-            }
-            if b.factor - a.factor <= FACTOR_ACCURACY * b.factor || difference.abs() <= FACTOR_ACCURACY * middle.largest
+            let close = FACTOR_ACCURACY * middle.factor;
+            if difference.abs() <= FACTOR_ACCURACY * middle.largest
+                || bracket.narrow(middle.factor, difference) <= close
+                || bracket.width() <= close
             {
                 return Ok(middle);
+            }
+            if difference < 0.0 {
+                a = middle;
+            } else {
+                b = middle;
             }
         }
         Ok(if a.largest < b.largest { a } else { b })
     }
 
     /// Minimum of the largest amplitude by golden sections, as long as they may find less than a known one.
-    fn smooth(&mut self, (mut low, mut high): (f64, f64), known: Tried, hooks: &mut Hooks<'_>) -> Result<Tried> {
-        let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    fn smooth(&mut self, (low, high): (f64, f64), known: Tried, hooks: &mut Hooks<'_>) -> Result<Tried> {
         let mut found = known;
         // Inside of the bracket the known one may be the corner itself: both neighbours at a small distance decide.
         for side in [-1.0, 1.0] {
@@ -198,27 +199,14 @@ impl LoadSearch<'_> {
         if found.factor.to_bits() == known.factor.to_bits() && known.factor > low && known.factor < high {
             return Ok(known);
         }
-        let mut inner = [high - golden * (high - low), low + golden * (high - low)];
-        let mut tried = [self.with(inner[0], hooks)?, self.with(inner[1], hooks)?];
-        for _ in 0..LIVES_TO_CLOSE {
-            if high - low <= FACTOR_ACCURACY.sqrt() * high {
-                break;
-            }
-            if tried[0].largest < tried[1].largest {
-                high = inner[1];
-                inner = [high - golden * (high - low), inner[0]];
-                tried = [self.with(inner[0], hooks)?, tried[0]];
-            } else {
-                low = inner[0];
-                inner = [inner[1], low + golden * (high - low)];
-                tried = [tried[1], self.with(inner[1], hooks)?];
-            }
-        }
-        for one in tried {
+        let width = FACTOR_ACCURACY.sqrt() * high;
+        least([low, high], width, |factor| -> Result<f64> {
+            let one = self.with(factor, hooks)?;
             if one.largest < found.largest {
                 found = one;
             }
-        }
+            Ok(one.largest)
+        })?;
         Ok(found)
     }
 }

@@ -1,7 +1,7 @@
 //! Values of a real Fourier series over one turn, and its crossings of a level.
 
 use crate::fourier::HarmonicSet;
-use crate::fourier::roots::safe_halley;
+use crate::roots::safe_halley;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 

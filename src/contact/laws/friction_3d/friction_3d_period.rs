@@ -12,8 +12,9 @@ use crate::contact::forms::radau::{RADAU_POINTS, RADAU_STAGES};
 use crate::contact::laws::friction_3d::friction_3d_path::{PathWalk, Phase};
 use crate::contact::laws::friction_3d::friction_3d_stuck::{Disc, StuckSlider, stuck_slider};
 use crate::error::{Error, Result, Status, try_push};
-use crate::fourier::{jet, safe_newton};
+use crate::fourier::jet;
 use crate::interrupt::Interrupt;
+use crate::roots::safe_newton;
 use std::f64::consts::TAU;
 
 /// Turns that are followed at most.

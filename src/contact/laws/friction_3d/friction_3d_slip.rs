@@ -5,9 +5,9 @@
 
 use crate::contact::forms::plane_path::{PlaneInstant, SlipPanel};
 use crate::contact::forms::radau::{RADAU_POINTS, RADAU_STAGES, RadauTables};
-use crate::fourier::safe_newton;
 use crate::interrupt::Interrupt;
 use crate::linalg::factors::lu::Lu;
+use crate::roots::safe_newton;
 
 /// Newton iterations of a panel, after which it is halved.
 /// Kind: cap.

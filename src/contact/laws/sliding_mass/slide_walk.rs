@@ -1,6 +1,7 @@
 //! The events of a mass that slides under a force, one after the other, as [`super::SlidingMass`] has them.
 
-use crate::fourier::{Extremum, HarmonicSet, crossing, integral, jet, safe_newton};
+use crate::fourier::{Extremum, HarmonicSet, crossing, integral, jet};
+use crate::roots::safe_newton;
 use std::f64::consts::{PI, TAU};
 
 /// The begin of a stick, sign 0, or of a slip in the sense of its sign, where the mass has no velocity; the force follows after a delay.

@@ -42,7 +42,7 @@ impl Rows {
     /// Writes the rows, rounded, to `y`.
     pub fn rounded<T: Entry>(&self, y: &mut [T]) {
         for (y, [re, im]) in y.iter_mut().zip(&self.0) {
-            *y = T::of(Complex64::new(re.rounded(), im.rounded()));
+            *y = T::of(Complex64::new(re.total(), im.total()));
         }
     }
 }

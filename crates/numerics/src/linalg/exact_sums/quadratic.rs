@@ -2,58 +2,10 @@
 //! structure they are smaller than the rounding error of their largest term.
 #![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
 
+use crate::linalg::exact_sums::compensated_sum::{Sum, rounding_of};
 use crate::linalg::sparse_storage::sparse::Csc;
 use num_complex::Complex64;
 use pulp::{Arch, Simd, WithSimd};
-
-/// A sum with its rounding errors accumulated separately (Ogita, Rump & Oishi 2005, doi:10.1137/030601818).
-#[derive(Clone, Copy, Debug, Default)]
-struct Sum {
-    value: f64,
-    error: f64,
-}
-
-impl Sum {
-    #[inline(always)]
-    fn add(&mut self, term: f64) {
-        let sum = self.value + term;
-        let part = sum - self.value;
-        self.error += (self.value - (sum - part)) + (term - part);
-        self.value = sum;
-    }
-
-    #[inline(always)]
-    fn add_product(&mut self, a: f64, b: f64) {
-        let product = a * b;
-        self.error += rounding_of(a, b, product);
-        self.add(product);
-    }
-
-    /// Adds a·b, where a is a sum with its own rounding errors.
-    fn add_multiple(&mut self, a: Self, b: f64) {
-        self.add_product(a.value, b);
-        self.error += a.error * b;
-    }
-
-    fn total(self) -> f64 {
-        self.value + self.error
-    }
-}
-
-/// Rounding error a·b − product, exactly, by splitting the factors (Dekker 1971, doi:10.1007/BF01397083). A fused
-/// multiply-add gives the same number, but is a slow call on processors that are not known to have it.
-#[inline(always)]
-fn rounding_of(a: f64, b: f64, product: f64) -> f64 {
-    let halves = |x: f64| {
-        let c = 134_217_729.0 * x;
-        let high = c - (c - x);
-        (high, x - high)
-    };
-    let ((ah, al), (bh, bl)) = (halves(a), halves(b));
-    let error = ((ah * bh - product) + ah * bl + al * bh) + al * bl;
-    // Numbers near the end of the range cannot be split.
-    if error.is_finite() { error } else { 0.0 }
-}
 
 /// Quadratic form below zero, relative to the sum of the moduli of its terms, that is rounding.
 /// Kind: rounding.

@@ -75,7 +75,7 @@ impl Entry for f64 {
 
     #[inline(always)]
     fn add_exactly(self, b: Self, [re, _]: &mut [Sum; 2]) {
-        re.add(self, b);
+        re.add_fused(self, b);
     }
 }
 
@@ -117,10 +117,10 @@ impl Entry for Complex64 {
 
     #[inline(always)]
     fn add_exactly(self, b: Self, [re, im]: &mut [Sum; 2]) {
-        re.add(self.re, b.re);
-        re.add(-self.im, b.im);
-        im.add(self.re, b.im);
-        im.add(self.im, b.re);
+        re.add_fused(self.re, b.re);
+        re.add_fused(-self.im, b.im);
+        im.add_fused(self.re, b.im);
+        im.add_fused(self.im, b.re);
     }
 }
 

@@ -1,4 +1,4 @@
-//! Roots of a function inside a bracket.
+//! Roots of a function with derivatives inside a bracket: Newton's and Halley's methods.
 
 /// Width below which another Newton step no longer matters: the force is continuous at every
 /// event, so an event misplaced by ε changes the Fourier integrals by O(ε²).
@@ -104,12 +104,8 @@ pub fn safe_newton(a: f64, b: f64, fa: f64, fb: f64, mut f: impl FnMut(f64) -> (
 /// Halley's method inside a bracket from a guess, with bisection where a step leaves it or does not converge: fewer
 /// values of the function than Newton's method needs. `f` returns a function and two derivatives; a step of the length
 /// `short` is the last one.
-pub(super) fn safe_halley(
-    (a, b): (f64, f64),
-    fa: f64,
-    (guess, short): (f64, f64),
-    mut f: impl FnMut(f64) -> [f64; 3],
-) -> f64 {
+#[must_use]
+pub fn safe_halley((a, b): (f64, f64), fa: f64, (guess, short): (f64, f64), mut f: impl FnMut(f64) -> [f64; 3]) -> f64 {
     let mut bracket = Bracket::new(a, b, fa);
     let mut tau = Bracket::begin(a, b, guess);
     for _ in 0..MOST_VALUES {
