@@ -183,7 +183,22 @@ fn derivatives_of_sliding_masses_are_differences() {
             problem.fill(&mut filled, &mut active).unwrap();
             shares.push(problem.slip_fractions()[0]);
             let largest = filled.iter().fold(0.0_f64, |m, d| m.max(d.abs()));
+            let by_omega = out.d_parameter.clone();
             let step = 1e-6 * at_limit;
+            let mut beside = |step: f64| {
+                problem.evaluate(&u, omega + step, &mut out).unwrap();
+                out.values.clone()
+            };
+            let [below, above] = [-1e-6, 1e-6].map(&mut beside);
+            let largest_by_omega = by_omega.iter().fold(0.0_f64, |m, d| m.max(d.abs()));
+            for i in 0..n {
+                let difference = (above[i] - below[i]) / 2e-6;
+                assert!(
+                    (by_omega[i] - difference).abs() < 1e-6 * largest_by_omega,
+                    "{kt:e}, {size}, {i} by omega: {} for {difference}",
+                    by_omega[i]
+                );
+            }
             for j in 0..n {
                 let mut at = |step: f64| {
                     let mut moved = u.clone();

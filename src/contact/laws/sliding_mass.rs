@@ -50,7 +50,7 @@ pub struct SlidingMass {
     pub stiffness: f64,
     /// fc
     pub limit: f64,
-    /// 1/h_r, 0 for a rigid slider.
+    /// 1/(h_r ω), 0 for a rigid slider.
     pub late: f64,
 }
 
@@ -147,6 +147,17 @@ impl PiecewiseLinear for SlidingMass {
         pieces: &mut Vec<Piece>,
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
+        // Ever slower: no force is late.
+        self.pieces_at((set, motion, 0.0), turning_points, pieces, interrupt)
+    }
+
+    fn pieces_at(
+        &self,
+        (set, motion, omega): (&HarmonicSet, &[f64], f64),
+        turning_points: &[Extremum],
+        pieces: &mut Vec<Piece>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         if !set.is_odd() {
             return fail!(Internal, "a sliding mass needs odd harmonics alone");
         }
@@ -156,7 +167,7 @@ impl PiecewiseLinear for SlidingMass {
             extrema: turning_points,
             at: 0,
             range: self.range(),
-            late: self.late,
+            late: self.late * omega,
         };
         let Some(mut begin) = walk.first_onset() else {
             self.push(Event::at(0.0, 0.0), Event::at(PI, 0.0), pieces);
