@@ -12,8 +12,15 @@ use crate::interrupt::Interrupt;
 
 const CONTEXT: &str = "the jumps of a contact force";
 
-/// Packed change of the force of `law` with a delay of all jumps, at a packed motion and an angular frequency; `None` where the law has
-/// none, or the slider sticks.
+/// The jumps of the force of a law.
+pub struct LateJumps {
+    /// Packed change of the force with a delay of all jumps.
+    pub by_delay: Vec<f64>,
+    /// Time by which the motion of the slider does not repeat itself after half a turn: its jumps are as doubtful.
+    pub apart: f64,
+}
+
+/// The jumps of the force of `law` at a packed motion and an angular frequency; `None` where the law has none, or the slider sticks.
 ///
 /// # Errors
 /// `OutOfMemory`, `StoppedByCaller`.
@@ -21,13 +28,13 @@ pub fn late_jumps(
     (set, motion, omega): (&HarmonicSet, &[f64], f64),
     law: &dyn Law,
     interrupt: &Interrupt<'_>,
-) -> Result<Option<Vec<f64>>> {
+) -> Result<Option<LateJumps>> {
     let Form::PiecewiseLinear(law) = law.form() else {
         return Ok(None);
     };
-    if law.sliding_ends().is_none() {
+    let Some(ends) = law.sliding_ends() else {
         return Ok(None);
-    }
+    };
     let highest = set.highest_reduced();
     let (mut extrema, mut pieces) = (Vec::new(), Vec::new());
     extrema
@@ -35,7 +42,7 @@ pub fn late_jumps(
         .and_then(|()| pieces.try_reserve_exact(law.most_pieces(highest)))
         .map_err(|_| Error::out_of_memory(CONTEXT))?;
     TurningPoints::new(set)?.find(set, motion, &mut extrema, interrupt)?;
-    law.pieces_at((set, motion, omega), &extrema, &mut pieces, interrupt)?;
+    let apart = ends.follow((set, motion, omega), &extrema, &mut pieces, interrupt)?;
     let (mut sum, mut one) = (
         try_vec(set.packed_len(), 0.0, CONTEXT)?,
         try_vec(set.packed_len(), 0.0, CONTEXT)?,
@@ -52,5 +59,5 @@ pub fn late_jumps(
         }
         slips = true;
     }
-    Ok(slips.then_some(sum))
+    Ok(slips.then_some(LateJumps { by_delay: sum, apart }))
 }

@@ -60,7 +60,12 @@ impl MovedEnds {
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         let (set, motion, _) = at;
-        if out.is_force_alone() || !pieces.iter().any(is_slip) {
+        if !pieces.iter().any(is_slip) {
+            return Ok(());
+        }
+        // A slip all the time is one piece, whose ends move.
+        out.linear = false;
+        if out.is_force_alone() {
             return Ok(());
         }
         self.forget();

@@ -14,7 +14,8 @@
 //! beyond it the harmonics of the force fall by two powers more, and their sum with H as H^-3.
 //!
 //! Where the exchanged motion is the force on a mass, the law has all harmonics of the jumps, and its forces are late by g/h_r. Rings that
-//! are left when the next slip begins move its end: all jumps are counted as late by a share of 1/h_r, whatever the number of harmonics.
+//! are left when the next slip begins move its end: all jumps are counted as late by a share of 1/h_r, whatever the number of harmonics,
+//! and by the time by which the motion of the slider does not repeat itself.
 
 use crate::aft::late_jumps;
 use crate::condense::Condensed;
@@ -81,7 +82,7 @@ fn lateness(
             continue;
         };
         let of_ring = exchange.ring / omega;
-        if of_ring.is_infinite() {
+        if of_ring.is_infinite() && exchange.mass_at.is_none() {
             continue; // a rigid stick
         }
         let (late, jumps) = if exchange.mass_at.is_some() {
@@ -89,7 +90,8 @@ fn lateness(
             let Some(jumps) = late_jumps((set, motion, omega), &*law.law, interrupt)? else {
                 continue;
             };
-            (OF_RING_OF_MASS * set.base() as f64 / of_ring, Some(jumps))
+            let late = OF_RING_OF_MASS * set.base() as f64 / of_ring + jumps.apart;
+            (late, Some(jumps.by_delay))
         } else {
             let share = (BEYOND_RING * of_ring / highest).min(1.0).powi(3);
             (OF_RING * share / of_ring, None)
@@ -98,7 +100,7 @@ fn lateness(
             Some(jumps) => system.problem.by_force(c, |i| set.get(jumps, i), &mut load),
             None => system.problem.by_slip_limit(c, &mut load),
         };
-        if !slips {
+        if !slips || late == 0.0 {
             continue;
         }
         if !system.solve_for(&load, &mut change[..n], interrupt)? {

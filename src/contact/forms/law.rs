@@ -244,6 +244,18 @@ pub trait SlidingEnds {
     /// α
     fn stiffness(&self) -> f64;
 
+    /// Fills the pieces as [`PiecewiseLinear::pieces_at`] does, and returns the time by which their half turn does not repeat itself.
+    ///
+    /// # Errors
+    /// Those of [`PiecewiseLinear::pieces`].
+    fn follow(
+        &self,
+        at: (&HarmonicSet, &[f64], f64),
+        turning_points: &[Extremum],
+        pieces: &mut Vec<Piece>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<f64>;
+
     /// Delay of the force over ω, where a slip ends with the motion −r times that at which slip begins, and its derivative by r.
     fn delay(&self, r: f64) -> [f64; 2];
 }
