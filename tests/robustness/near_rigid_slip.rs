@@ -313,3 +313,30 @@ fn rigid_sliders_between_blades_that_move_alike_have_a_solution() {
         solved(&blades(8, f64::INFINITY, preload));
     }
 }
+
+/// A rigid slider beside another nonlinear contact, against an integration in time with kt = 1e5, where the difference of the two is 1e-4.
+#[test]
+fn a_rigid_slider_beside_other_contacts_is_right_in_time() {
+    let beside = [
+        ("cubic", Contact::cubic(2, None, 0.0, 0.5), 0.605),
+        ("gap", Contact::unilateral(Some(2), None, 5.0, 0.2), 0.605),
+        ("Jenkins", Contact::jenkins(2, None, 2.0, 0.3, 0.5), 0.665),
+    ];
+    for (name, contact, omega) in beside {
+        let with = |kt: f64| {
+            let mut model = chain(kt);
+            model.add_contact(&contact).unwrap();
+            model
+        };
+        let rigid = sweep(&with(f64::INFINITY), &solver(), omega, omega, &[]);
+        assert_eq!(rigid.status(), Status::Ok, "{name}, {omega}");
+        let model = with(1e5);
+        let plain = sweep(&model, &at_dof(0, harmonics(31)), omega, omega, &[]);
+        let in_time = verify(&model, &plain, 0, &VerifyOptions::default(), &mut Hooks::default()).unwrap();
+        assert!(in_time.same, "{name}, {omega}");
+        let error = (fundamental(&rigid, 0) - in_time.response).norm() / in_time.response.norm();
+        let estimate = rigid.error_estimate()[0];
+        println!("{name}, {omega}: error {error:.1e}, estimate {estimate:.1e}");
+        assert!(error <= 1e-4 + estimate, "{name}, {omega}: {error:e}, {estimate:e}");
+    }
+}
