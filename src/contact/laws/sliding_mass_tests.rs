@@ -90,7 +90,7 @@ fn half_turns_that_do_not_repeat_themselves_are_told() {
         late: 0.1,
     };
     let none = Interrupt::none();
-    let mut apart = |first: f64| {
+    let apart = |first: f64| {
         let x = [
             first,
             0.0,
