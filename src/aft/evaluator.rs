@@ -245,7 +245,7 @@ impl Evaluator {
                 self.smooth.spectral(law, set, motion, out, interrupt)?;
             }
             (Form::PiecewiseLinear(law), Scalar::Exact(evaluator)) => {
-                evaluator.evaluate(law, set, motion, out, interrupt)?;
+                evaluator.evaluate(law, (set, motion, omega), out, interrupt)?;
             }
             (Form::PiecewiseLinear(law), Scalar::Sampled(evaluator)) => {
                 evaluator.evaluate(law, set, motion, out, interrupt)?;

@@ -106,16 +106,17 @@ impl Assembly {
         Ok(())
     }
 
-    /// Adds a change of the force of a packed spectrum `g` by the product of the motion with a row; the force itself has none.
+    /// Adds a change of the force of a packed spectrum `g` by the product of the motion with a row; the force itself has none. Returns
+    /// the spectrum; no number for forces alone.
     pub(super) fn add_change(
         &mut self,
         (motion, row): (&[f64], &[f64]),
         fill: impl FnOnce(&mut [f64]),
         out: &mut Evaluation,
         interrupt: &Interrupt<'_>,
-    ) -> Result<()> {
+    ) -> Result<&[f64]> {
         if out.is_force_alone() {
-            return Ok(());
+            return Ok(&[]);
         }
         if self.pending == MOST_PENDING {
             self.flush(out, interrupt)?;
@@ -128,9 +129,9 @@ impl Assembly {
         for (o, g) in out.offset.iter_mut().zip(&*g) {
             *o -= by_motion * g;
         }
-        self.anchors[own].copy_from_slice(row);
+        self.anchors[own.clone()].copy_from_slice(row);
         self.pending += 1;
-        Ok(())
+        Ok(&self.g[own])
     }
 
     /// Adds the pending products to the Jacobian.

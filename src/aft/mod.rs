@@ -18,6 +18,7 @@ pub mod hysteretic;
 mod hysteretic_derivatives;
 mod jacobian_assembly;
 mod jacobian_block;
+mod late_jumps;
 pub mod memoryless;
 mod moved_ends;
 mod normal_force;
@@ -31,3 +32,4 @@ pub mod varying_normal_load;
 
 pub use evaluation::Evaluation;
 pub use evaluator::Evaluator;
+pub use late_jumps::late_jumps;

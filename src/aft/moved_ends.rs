@@ -12,6 +12,8 @@
 //!
 //! and the next slip, from b on, begins with the momentum A ∓ 2r δc. Without any stick the first slip of a half turn begins with that of
 //! the last one, of opposite sign.
+//!
+//! The delay δ = ω λ(q) has a derivative by ω, too: δc has the term λ, and the momentum of the next slip follows.
 
 use crate::aft::evaluation::Evaluation;
 use crate::aft::jacobian_assembly::Assembly;
@@ -29,6 +31,8 @@ pub(super) struct MovedEnds {
     row: Vec<f64>,
     /// ±2 r δc as such a row, or A.
     jump: Vec<f64>,
+    /// The derivatives of A and of ±2 r δc by ω.
+    by_omega: [f64; 2],
 }
 
 /// Whether a piece is a slip.
@@ -42,70 +46,91 @@ impl MovedEnds {
         Ok(Self {
             row: row()?,
             jump: row()?,
+            by_omega: [0.0; 2],
         })
     }
 
     /// Adds the impulses at the ends of all slips among the pieces of half a turn.
     pub(super) fn add(
         &mut self,
-        at: (&HarmonicSet, &[f64]),
+        at: (&HarmonicSet, &[f64], f64),
         (pieces, law): (&[Piece], &dyn SlidingEnds),
         assembly: &mut Assembly,
         out: &mut Evaluation,
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        let (set, motion) = at;
-        if out.is_force_alone() || !pieces.iter().any(is_slip) {
+        let (set, motion, _) = at;
+        if !pieces.iter().any(is_slip) {
             return Ok(());
         }
-        self.row.fill(0.0);
+        // A slip all the time is one piece, whose ends move.
+        out.linear = false;
+        if out.is_force_alone() {
+            return Ok(());
+        }
+        self.forget();
         let begin = pieces.last().and_then(|last| last.anchor).map(|rest| rest - PI);
-        if pieces.iter().all(is_slip) {
+        if begin.is_some() {
             // With m the momentum at the end for none at the begin, and Π m₀ for m₀ alone: the first is −m/(1 + Π).
             let mut rest = begin;
             let mut all = 1.0;
             for piece in pieces {
-                all *= self.slip(at, (rest, piece), law);
+                interrupt.check_before(motion.len() as u64)?;
+                all *= self.follow(at, (rest, piece), law);
                 rest = piece.anchor;
             }
-            for a in &mut self.row {
+            for a in self.row.iter_mut().chain(&mut self.by_omega[..1]) {
                 *a /= -(1.0 + all);
             }
         }
         let mut rest = begin;
         for piece in pieces {
             interrupt.check_before(motion.len() as u64)?;
+            self.follow(at, (rest, piece), law);
             if is_slip(piece) {
-                self.slip(at, (rest, piece), law);
+                let of_omega = self.by_omega[1];
                 let fill = |g: &mut [f64]| impulse(set, piece.end, law.stiffness(), g);
-                assembly.add_change((motion, &self.jump), fill, out, interrupt)?;
-            } else {
-                self.row.fill(0.0);
+                let g = assembly.add_change((motion, &self.jump), fill, out, interrupt)?;
+                for (by_omega, g) in out.by_omega.iter_mut().zip(g).filter(|_| of_omega != 0.0) {
+                    *by_omega += of_omega * g;
+                }
             }
             rest = piece.anchor;
         }
         Ok(())
     }
 
-    /// Follows a slip that begins at a time of rest or, after a stick, with its piece: leaves the momentum of the next slip, and the
-    /// impulse over α. Returns the factor of the momentum at its begin.
-    fn slip(
+    /// No momentum.
+    fn forget(&mut self) {
+        self.row.fill(0.0);
+        self.by_omega[0] = 0.0;
+    }
+
+    /// Follows a stick, or a slip that begins at a time of rest or, after a stick, with its piece: leaves the momentum of the next slip,
+    /// and the impulse over α. Returns the factor of the momentum at its begin.
+    fn follow(
         &mut self,
-        (set, motion): (&HarmonicSet, &[f64]),
+        (set, motion, omega): (&HarmonicSet, &[f64], f64),
         (rest, piece): (Option<f64>, &Piece),
         law: &dyn SlidingEnds,
     ) -> f64 {
+        if !is_slip(piece) {
+            self.forget();
+            return 0.0;
+        }
         let end = piece.anchor.unwrap_or(piece.end);
         self.integrate(set, rest.unwrap_or(piece.start), end);
         if piece.anchor.is_none() {
             self.jump.copy_from_slice(&self.row);
-            self.row.fill(0.0);
+            self.by_omega[1] = self.by_omega[0];
+            self.forget();
             return 0.0;
         }
         // ±r
         let range = piece.offset / law.stiffness();
         let at = jet(set, motion, end);
-        let slope = law.delay(-at.x / range)[1];
+        let [delay, slope] = law.delay(-at.x / range);
+        let slope = omega * slope;
         // δb = −A/(x ∓ r), δc = (1 ∓ δ′ x′/r) δb ∓ δ′ δx/r
         let of_momentum = -(1.0 - slope * at.dx / range) / (at.x - range);
         set.basis(end, &mut self.jump);
@@ -113,6 +138,9 @@ impl MovedEnds {
             *jump = 2.0 * range * (of_momentum * *a - slope / range * *jump);
             *a -= *jump;
         }
+        let [a, jump] = &mut self.by_omega;
+        *jump = 2.0 * range * (of_momentum * *a + delay);
+        *a -= *jump;
         1.0 - 2.0 * range * of_momentum
     }
 
@@ -133,7 +161,7 @@ impl MovedEnds {
 }
 
 /// Packed harmonics of an impulse at a time, and of its mirror image half a turn later.
-fn impulse(set: &HarmonicSet, tau: f64, size: f64, g: &mut [f64]) {
+pub(super) fn impulse(set: &HarmonicSet, tau: f64, size: f64, g: &mut [f64]) {
     let mut turn = Complex64::cis(-tau);
     let step = if set.stride() == 2 { turn * turn } else { turn };
     let factor = 2.0 / PI * size;

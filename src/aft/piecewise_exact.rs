@@ -82,20 +82,19 @@ impl Exact {
         }
     }
 
-    /// Force and Jacobian of `law` for the prepared motion; see [`crate::aft`].
+    /// Force and Jacobian of `law` for the prepared motion at an angular frequency; see [`crate::aft`].
     ///
     /// # Errors
     /// `StoppedByCaller`.
     pub fn evaluate(
         &mut self,
         law: &dyn PiecewiseLinear,
-        set: &HarmonicSet,
-        motion: &[f64],
+        (set, motion, omega): (&HarmonicSet, &[f64], f64),
         out: &mut Evaluation,
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         self.pieces.clear();
-        law.pieces(set, motion, &self.extrema, &mut self.pieces, interrupt)?;
+        law.pieces_at((set, motion, omega), &self.extrema, &mut self.pieces, interrupt)?;
         self.assembly.start(out);
         let turn = TAU / set.stride() as f64;
         let ends = law.sliding_ends();
@@ -122,7 +121,7 @@ impl Exact {
         if let Some(ends) = ends {
             let pieces = (&self.pieces[..], ends);
             self.ends
-                .add((set, motion), pieces, &mut self.assembly, out, interrupt)?;
+                .add((set, motion, omega), pieces, &mut self.assembly, out, interrupt)?;
         }
         interrupt.check()?;
         self.assembly.finish(set, motion, out, interrupt)

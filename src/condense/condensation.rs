@@ -378,7 +378,7 @@ impl Condensed {
             let exchange = self.contacts.exchanges[one[0].coordinate];
             let base = self.set.base() as f64;
             let exchanged = exchange.and_then(|e| {
-                let late = e.mass_at.map(|omega| base * omega / e.ring);
+                let late = e.mass_at.map(|_| base / e.ring);
                 model.contacts()[contact].exchanged((e.stiffness, late), length)
             });
             let assembled = AssembledLaw {

@@ -32,6 +32,8 @@ pub enum Way {
     Homotopy,
     /// A Newton homotopy from an anchor.
     Anchor,
+    /// From contacts as soft as the structure, which become as stiff as they are.
+    Stiffened,
     /// Continuation of the branch from another parameter value.
     Branch,
     /// Newton's method from a solution with fewer harmonics.
@@ -48,6 +50,7 @@ impl Way {
             Self::Newton(InitialGuess::Reference) => "first point solved from the contacts' reference stiffness",
             Self::Homotopy => "first point solved by a homotopy from small motion or rest",
             Self::Anchor => "first point solved by a homotopy from an anchor",
+            Self::Stiffened => "first point solved with softer contacts, which become as stiff as they are",
             Self::Branch => "first point solved by following the branch",
             Self::Transferred => "first point solved from one with fewer harmonics",
         }
@@ -151,6 +154,15 @@ fn try_each_way(
     if problem.is_bounded() {
         let reached = try_anchors(problem, (settings, effort), corrector, interrupt);
         if let Some(first) = attempt(reached, None, &mut failure)? {
+            return Ok(first);
+        }
+    }
+    if let Some(by) = problem.softened_by() {
+        let reached = from_softened(problem, (settings, effort), by, corrector, interrupt);
+        problem.soften(0.0);
+        if let Some(v) = attempt(reached, None, &mut failure)?
+            && let Some(first) = finish(problem, settings, v, Way::Stiffened, corrector, interrupt)?
+        {
             return Ok(first);
         }
     }
@@ -284,6 +296,40 @@ fn try_anchors(
         }
     }
     Ok(None)
+}
+
+/// Solves with contacts as soft as `by` says, ln σ, and follows the solution until they are as stiff as they are.
+fn from_softened(
+    problem: &mut dyn Problem,
+    (settings, effort): (&Settings, Effort),
+    by: f64,
+    corrector: &mut Corrector,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<Vec<f64>>> {
+    problem.soften(by);
+    let mut u = try_vec(problem.size(), 0.0, CONTEXT)?;
+    let first = match homotopy(problem, (settings, effort), &u, corrector, interrupt)? {
+        None => try_anchors(problem, (settings, effort), corrector, interrupt)?,
+        first => first,
+    };
+    let Some(first) = first else { return Ok(None) };
+    u.copy_from_slice(first.point.unknowns());
+    let Some(mut path) = problem.stiffening(by, settings.start) else {
+        return Ok(None);
+    };
+    let along = Settings {
+        start: path.start,
+        end: path.end,
+        steps: StepControl::new(0.0, 0.0, LONG_STEP),
+        ..*settings
+    };
+    let points = (effort, path.patience);
+    Ok(
+        match follow(&mut *path.problem, (&along, points), &u, corrector, interrupt)? {
+            Reached::End(v) | Reached::Part(v) => Some(v),
+            Reached::Nothing => None,
+        },
+    )
 }
 
 /// Where a homotopy path stopped.

@@ -13,9 +13,11 @@
 //! that at H = h_r: the other half is counted, as a change of the slip limit by 1/(2 h_r). A ring is a filter of second order:
 //! beyond it the harmonics of the force fall by two powers more, and their sum with H as H^-3.
 //!
-//! Where the exchanged motion is the force on a mass, the law has all harmonics of the jumps, and its forces are late by g/h_r at the
-//! frequency ω₀: the change at another one, and a share for what is of second order, are counted.
+//! Where the exchanged motion is the force on a mass, the law has all harmonics of the jumps, and its forces are late by g/h_r. Rings that
+//! are left when the next slip begins move its end: all jumps are counted as late by a share of 1/h_r, whatever the number of harmonics,
+//! and by the time by which the motion of the slider does not repeat itself.
 
+use crate::aft::late_jumps;
 use crate::condense::Condensed;
 use crate::error::{Result, try_vec};
 use crate::harmonics::estimate::CONTEXT;
@@ -37,7 +39,7 @@ pub(super) const OF_HALF: f64 = 0.5;
 /// Kind: tuned; measured on: not recorded.
 const OF_RING: f64 = 0.5;
 
-/// The same for exchanged motions with a mass, whose forces are as late as those of the ring but for its second order.
+/// Lateness of all jumps over 1/h_r that the law of a mass does not have.
 /// Kind: tuned; measured on: the chain of 8 masses of `tests/robustness/near_rigid.rs` with kt/k from 3e4 on.
 const OF_RING_OF_MASS: f64 = 0.05;
 
@@ -69,28 +71,39 @@ fn lateness(
     (at, omega): (&[f64], f64),
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<f64>> {
-    let n = system.problem.unknowns();
-    let highest = condensed.set().numbers().last().copied().unwrap_or(0) as f64;
+    let (n, set) = (system.problem.unknowns(), condensed.set());
+    let m = set.packed_len();
+    let highest = set.numbers().last().copied().unwrap_or(0) as f64;
     let mut load = try_vec(n, 0.0, CONTEXT)?;
     let mut change = try_vec(n + 1, 0.0, CONTEXT)?;
     let mut sum = 0.0;
-    for c in 0..condensed.coordinates() {
+    for law in condensed.laws() {
+        let c = law.coordinates[0];
         let Some(exchange) = condensed.exchange_of(c) else {
             continue;
         };
-        if !slip_forces::by_slip_limit(&system.problem, c, &mut load) {
-            continue;
-        }
         let of_ring = exchange.ring / omega;
-        if of_ring.is_infinite() {
+        if of_ring.is_infinite() && exchange.mass_at.is_none() {
             continue; // a rigid stick
         }
-        let share = match exchange.mass_at {
-            None => OF_RING,
-            // The forces are late by as much as at ω₀.
-            Some(at) => OF_RING_OF_MASS + (at / omega - 1.0).abs(),
+        let (late, jumps) = if exchange.mass_at.is_some() {
+            let motion = &at[c * m..(c + 1) * m];
+            let Some(jumps) = late_jumps((set, motion, omega), &*law.law, interrupt)? else {
+                continue;
+            };
+            let late = OF_RING_OF_MASS * set.base() as f64 / of_ring + jumps.apart;
+            (late, Some(jumps.by_delay))
+        } else {
+            let share = (BEYOND_RING * of_ring / highest).min(1.0).powi(3);
+            (OF_RING * share / of_ring, None)
         };
-        let late = share / of_ring * (BEYOND_RING * of_ring / highest).min(1.0).powi(3);
+        let slips = match &jumps {
+            Some(jumps) => slip_forces::by_force(&system.problem, c, |i| set.get(jumps, i), &mut load),
+            None => slip_forces::by_slip_limit(&system.problem, c, &mut load),
+        };
+        if !slips || late == 0.0 {
+            continue;
+        }
         if !system.solve_for(&load, &mut change[..n], interrupt)? {
             return Ok(None);
         }
@@ -98,7 +111,11 @@ fn lateness(
             *x = -*x;
         }
         let (_, by_motion) = system.problem.observe(at, &change);
-        sum += late * (by_motion + slip_forces::observed_by_slip_limit(&system.problem, c)).norm();
+        let by_force = match &jumps {
+            Some(jumps) => slip_forces::observed_by_force(&system.problem, c, |i| set.get(jumps, i)),
+            None => slip_forces::observed_by_slip_limit(&system.problem, c),
+        };
+        sum += late * (by_motion + by_force).norm();
     }
     Ok(Some(sum))
 }

@@ -34,6 +34,8 @@ pub struct ContactForces<'a> {
 pub struct StaticPart {
     /// Scale factor s: every law f(y) is replaced by s·f(y/s).
     factor: f64,
+    /// Factor σ on the motion: every law f(y) is replaced by f(σ y), whose stiffness is σ times as large.
+    stiffening: f64,
     /// Static motion per coordinate, and packed static forces, from which motions and forces are counted; empty if
     /// these are zero.
     rest: Vec<f64>,
@@ -152,6 +154,7 @@ impl<'a> ContactForces<'a> {
             other: None,
             static_part: StaticPart {
                 factor: 1.0,
+                stiffening: 1.0,
                 rest: Vec::new(),
                 rest_force: Vec::new(),
                 tangents: Vec::new(),
@@ -194,6 +197,11 @@ impl<'a> ContactForces<'a> {
     /// runs the homotopy that finds a first point.
     pub fn set_scale(&mut self, factor: f64) {
         self.static_part.factor = factor;
+    }
+
+    /// Makes the stiffness of all laws `factor` times as large, at the loads and slip limits that they have.
+    pub fn set_stiffening(&mut self, factor: f64) {
+        self.static_part.stiffening = factor;
     }
 
     /// Counts motions and forces from a static state, in the unit of the condensed model, whose laws are evaluated at
@@ -251,8 +259,9 @@ impl<'a> ContactForces<'a> {
         let s = self.static_part.factor;
         // Forces that scale with the motion; at rest they follow from the Jacobians.
         let unit = if s.is_infinite() { 0.0 } else { s };
+        let reduced = s / self.static_part.stiffening;
         for (scaled, y) in self.memory.scaled.iter_mut().zip(motion) {
-            *scaled = y / s;
+            *scaled = y / reduced;
         }
         for (scaled, rest) in self.memory.scaled.iter_mut().step_by(m).zip(&self.static_part.rest) {
             *scaled += rest;
@@ -309,6 +318,7 @@ impl<'a> ContactForces<'a> {
                 add(&mut self.result.by_omega[here], &found.by_omega[law], unit);
             }
         }
+        self.stiffen();
         if !self.static_part.rest.is_empty() {
             self.count_from_rest(unit);
         }
@@ -319,6 +329,18 @@ impl<'a> ContactForces<'a> {
             self.linearise(motion);
         }
         Ok(())
+    }
+
+    /// Turns the derivatives by σ y, with the factor of [`Self::set_stiffening`], into those by y.
+    fn stiffen(&mut self) {
+        if self.static_part.stiffening.to_bits() == 1.0_f64.to_bits() {
+            return;
+        }
+        self.result.jacobians.scale(self.static_part.stiffening);
+        // No contact has its own stiffness.
+        self.told.all_stuck = false;
+        self.told.linear.fill(false);
+        self.told.inactive.fill(false);
     }
 
     /// Subtracts the static forces. With F and J at Y, the derivative by ln s of s·(F − F₀) is s·(F − J Y) + s·(J Y₀
@@ -455,6 +477,12 @@ impl<'a> ContactForces<'a> {
     #[inline]
     pub fn d_ln_scale(&self, coordinate: usize, i: usize) -> Complex64 {
         self.part(&self.result.offset, coordinate, i)
+    }
+
+    /// ∂f/∂ln σ of a coordinate in the i-th carried harmonic, with the factor of [`Self::set_stiffening`]: J Y.
+    #[must_use]
+    pub fn d_ln_stiffening(&self, coordinate: usize, i: usize) -> Complex64 {
+        self.part(&self.result.force, coordinate, i) - self.part(&self.result.offset, coordinate, i)
     }
 
     /// ∂f/∂ω, packed, coordinate after coordinate.

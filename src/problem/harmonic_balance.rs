@@ -52,6 +52,10 @@ const LEAST_LINEAR_MOTION: f64 = 1e-6;
 /// Kind: tuned; measured on: one slider with 64 harmonics, whose terms are then up to a fourth of the unknowns.
 const SHORT_PIECES: f64 = 0.16;
 
+/// Stiffness of softened contacts over the reference stiffness, which is ten times that of the structure for near-rigid ones.
+/// Kind: tuned; measured on: random chains of 3 to 7 masses with pressed `friction_3d`, kn/k 1e4 to 1e8.
+const SOFTENED: f64 = 3.0;
+
 /// Coordinates from which the residual takes its products with columns as a whole.
 /// Kind: tuned; measured on: a rod of 1,000 with 300 sliders.
 const PRODUCTS_FROM: usize = 16;
@@ -217,8 +221,11 @@ impl<'a> HarmonicBalance<'a> {
     fn evaluate_at(&mut self, u: &[f64], omega: f64, path: Option<(Path, f64)>, out: &mut Residual) -> Result<()> {
         let scale = match path {
             Some((Path::ScaledLaws, p)) => p.exp(),
-            Some((Path::GrowingLoad | Path::FromTangents, _)) | None => 1.0,
+            Some((Path::GrowingLoad | Path::Stiffening | Path::FromTangents, _)) | None => 1.0,
         };
+        if let Some((Path::Stiffening, p)) = path {
+            self.forces.set_stiffening(p.exp());
+        }
         self.forces.set_scale(scale);
         let interrupt = self.forces.interrupt();
         if let Some(ring) = &mut self.products.ring {
@@ -309,6 +316,7 @@ impl<'a> HarmonicBalance<'a> {
                 let by_parameter = match path {
                     None => self.forces.by_omega(column, i),
                     Some((Path::ScaledLaws, _)) => self.forces.d_ln_scale(column, i),
+                    Some((Path::Stiffening, _)) => self.forces.d_ln_stiffening(column, i),
                     Some((Path::GrowingLoad | Path::FromTangents, _)) => Complex64::ZERO,
                 };
                 let rows = column * outputs..column * outputs + coordinates;
@@ -390,6 +398,7 @@ impl<'a> HarmonicBalance<'a> {
             dw += match path {
                 None => self.forces.by_omega(c, i) * along_p,
                 Some(Path::ScaledLaws) => self.forces.d_ln_scale(c, i) * along_p,
+                Some(Path::Stiffening) => self.forces.d_ln_stiffening(c, i) * along_p,
                 Some(Path::GrowingLoad | Path::FromTangents) => Complex64::ZERO,
             };
             z -= g * w;
@@ -612,6 +621,25 @@ impl Problem for HarmonicBalance<'_> {
             return Ok(None);
         }
         Ok(Some(PathHomotopy::between((start, 0.0), self, Path::ScaledLaws, p)))
+    }
+
+    fn softened_by(&self) -> Option<f64> {
+        if !self.loaded_at_rest || self.condensed.has_exchanges() {
+            return None;
+        }
+        let observed = self.observed;
+        let ratio = |c: usize| SOFTENED * self.condensed.kappa(c, observed).norm() / self.condensed.stiffness(c);
+        let near_rigid = (0..self.condensed.coordinates()).map(ratio).filter(|r| *r > 0.0);
+        let least = near_rigid.fold(1.0, f64::min);
+        (least < 1.0).then(|| least.ln())
+    }
+
+    fn soften(&mut self, ln_factor: f64) {
+        self.forces.set_stiffening(ln_factor.exp());
+    }
+
+    fn stiffening(&mut self, ln_factor: f64, p: f64) -> Option<Homotopy<'_>> {
+        Some(PathHomotopy::between((ln_factor, 0.0), self, Path::Stiffening, p))
     }
 
     /// Bounded solutions exist with damping, which absorbs the power of the forces. Without damping, resonances are

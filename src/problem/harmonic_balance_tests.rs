@@ -183,7 +183,22 @@ fn derivatives_of_sliding_masses_are_differences() {
             problem.fill(&mut filled, &mut active).unwrap();
             shares.push(problem.slip_fractions()[0]);
             let largest = filled.iter().fold(0.0_f64, |m, d| m.max(d.abs()));
+            let by_omega = out.d_parameter.clone();
             let step = 1e-6 * at_limit;
+            let mut beside = |step: f64| {
+                problem.evaluate(&u, omega + step, &mut out).unwrap();
+                out.values.clone()
+            };
+            let [below, above] = [-1e-6, 1e-6].map(&mut beside);
+            let largest_by_omega = by_omega.iter().fold(0.0_f64, |m, d| m.max(d.abs()));
+            for i in 0..n {
+                let difference = (above[i] - below[i]) / 2e-6;
+                assert!(
+                    (by_omega[i] - difference).abs() < 1e-6 * largest_by_omega,
+                    "{kt:e}, {size}, {i} by omega: {} for {difference}",
+                    by_omega[i]
+                );
+            }
             for j in 0..n {
                 let mut at = |step: f64| {
                     let mut moved = u.clone();
@@ -204,4 +219,51 @@ fn derivatives_of_sliding_masses_are_differences() {
     }
     assert!(shares.iter().any(|s| *s > 0.05 && *s < 0.95), "{shares:?}");
     assert!(shares.iter().any(|s| *s > 0.999), "{shares:?}");
+}
+
+/// Contacts that become stiffer: the derivatives of the residual by ln σ and by the motions, below and above the number of coordinates
+/// from which products are taken as a whole.
+#[test]
+fn derivatives_along_the_stiffness_of_contacts_are_differences() {
+    let interrupt = Interrupt::none();
+    let (range, omega, p) = ((1.0, 2.0).into(), 1.37, -0.8_f64);
+    for sliders in [1, 3, 20] {
+        let model = chain(sliders);
+        let options = SolverOptions {
+            harmonics: 3,
+            ..SolverOptions::default()
+        };
+        let condensed = Condensed::new(&model, &options, range, &interrupt).unwrap();
+        let mut problem = HarmonicBalance::new(&condensed, 88, range, 0, None, &interrupt).unwrap();
+        let n = problem.unknowns();
+        let u: Vec<f64> = (0..n).map(|i| 0.9 * (0.37 * (i * 13) as f64).sin()).collect();
+        let mut out = Residual::new(n).unwrap();
+        let mut at = |problem: &mut HarmonicBalance<'_>, u: &[f64], p: f64| {
+            problem.evaluate_along(Path::Stiffening, omega, u, p, &mut out).unwrap();
+            (out.values.clone(), out.d_parameter.clone())
+        };
+        let (_, by_p) = at(&mut problem, &u, p);
+        let (mut filled, mut active) = (vec![0.0; n * n], vec![true; n]);
+        problem.fill(&mut filled, &mut active).unwrap();
+        let step = 1e-6;
+        let (below, above) = (at(&mut problem, &u, p - step).0, at(&mut problem, &u, p + step).0);
+        let size = norm(&by_p);
+        assert!(size > 1e-3, "{size:e}");
+        for i in 0..n {
+            let difference = (above[i] - below[i]) / (2.0 * step);
+            assert!((by_p[i] - difference).abs() < 1e-6 * size, "{sliders}, {i}");
+        }
+        for j in (0..n).step_by(1 + n / 8) {
+            let mut moved = |step: f64| {
+                let mut u = u.clone();
+                u[j] += step;
+                at(&mut problem, &u, p).0
+            };
+            let (below, above) = (moved(-step), moved(step));
+            for i in 0..n {
+                let difference = (above[i] - below[i]) / (2.0 * step);
+                assert!((filled[j * n + i] - difference).abs() < 1e-6, "{sliders}, {i}, {j}");
+            }
+        }
+    }
 }

@@ -22,6 +22,8 @@ pub enum Path {
     ScaledLaws,
     /// Factor on the forces that vibrate; constant ones act in full.
     GrowingLoad,
+    /// Parameter ln σ, where σ is the factor on the motion in the laws, hence on their stiffness: loads and limits stay.
+    Stiffening,
     /// Share α of the laws in α f + (1 − α) T y, with their tangents T at the static state; for nonlinear modes only.
     FromTangents,
 }

@@ -103,6 +103,19 @@ pub trait Problem: Jacobian {
     /// `OutOfMemory`.
     fn homotopy(&mut self, p: f64, u: &[f64]) -> Result<Option<Homotopy<'_>>>;
 
+    /// ln σ of contacts as soft as σ times theirs with which a first point is easily found, where contacts are near-rigid.
+    fn softened_by(&self) -> Option<f64> {
+        None
+    }
+
+    /// Makes the contacts as soft as that in the following evaluations; 0: as they are.
+    fn soften(&mut self, _ln_factor: f64) {}
+
+    /// A homotopy over ln σ that ends at this problem at fixed `p` with its contacts as they are.
+    fn stiffening(&mut self, _ln_factor: f64, _p: f64) -> Option<Homotopy<'_>> {
+        None
+    }
+
     /// Whether λ R(u) + (1 − λ)(u − a) = 0 has bounded solutions for any a, so that a homotopy can lead from u = a to
     /// a solution.
     fn is_bounded(&self) -> bool {

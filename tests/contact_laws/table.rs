@@ -24,7 +24,8 @@ fn evaluate(law: &Table, set: &HarmonicSet, motion: &[f64]) -> Evaluation {
     let most = law.most_pieces(set.highest_reduced());
     let mut way = Exact::new(set, most).unwrap();
     way.prepare(set, motion, &Interrupt::none()).unwrap();
-    way.evaluate(law, set, motion, &mut out, &Interrupt::none()).unwrap();
+    way.evaluate(law, (set, motion, 1.0), &mut out, &Interrupt::none())
+        .unwrap();
     assert!(
         way.pieces().len() <= most,
         "{} pieces, bound {most}",

@@ -27,7 +27,7 @@ const NOMINAL: f64 = 160.0;
 const BELOW_NOMINAL: f64 = 0.25;
 const MASS_LIKE: f64 = 2.0;
 
-/// Least harmonic at which a stick rings for the force on a mass: the harmonics carried are below.
+/// Least harmonic at which a stick rings for the force on a mass.
 /// Kind: tuned; measured on: the chain of 8 masses of `tests/robustness/near_rigid.rs`.
 const MASS_BELOW_RING: f64 = 100.0;
 
@@ -99,7 +99,7 @@ pub(crate) fn check_rigid(
 }
 
 impl Condensed {
-    /// Highest harmonic that is of use beside motions with a mass whose sticks ring: with more of them their forces would be late twice.
+    /// Highest harmonic that is of use beside motions with a mass whose sticks ring: what is left then are their rings.
     pub(crate) fn highest_below_rings(&self) -> usize {
         let with_mass = self
             .contacts
@@ -224,10 +224,10 @@ impl Condensed {
                 *slope = s * *slope + slope_of_s * *value;
                 *value *= s;
             }
-            table.slope[c * outputs + c] += slope_of_s * exchange.compliance;
+            table.slope[c * outputs + c] += slope_of_s * exchange.compliance_in(number);
             let own = &mut table.value[c * outputs + c];
             let (motion, range) = (own.norm(), exchange.stiffness.recip());
-            *own += s * exchange.compliance - range;
+            *own += s * exchange.compliance_in(number) - range;
             if motion <= UNMOVED * range {
                 *own += CREEP * range;
             }

@@ -126,7 +126,7 @@ pub trait ContactLaw {
 
     /// The same force over the exchanged motion of [`crate::condense::blocks::exchange`] with its stiffness; `None` where the law is
     /// no slider under a constant load. `late`: over the force on the mass at the contact, where the
-    /// stick rings at the harmonic 1/`late`; else over the rate.
+    /// stick rings at the angular frequency 1/`late`, over the base of the harmonics; else over the rate.
     fn exchanged(&self, (stiffness, late): (f64, Option<f64>), length: f64) -> Option<Arc<dyn Law>> {
         let _ = (stiffness, late, length);
         None
@@ -211,6 +211,20 @@ pub trait PiecewiseLinear {
         4 * highest + 8
     }
 
+    /// [`Self::pieces`] at an angular frequency, of a law whose force depends on it.
+    ///
+    /// # Errors
+    /// Those of [`Self::pieces`].
+    fn pieces_at(
+        &self,
+        (set, motion, _omega): (&HarmonicSet, &[f64], f64),
+        turning_points: &[Extremum],
+        pieces: &mut Vec<Piece>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        self.pieces(set, motion, turning_points, pieces, interrupt)
+    }
+
     /// State of the contact on a piece of it.
     fn state(&self, piece: &Piece) -> State;
 
@@ -230,7 +244,19 @@ pub trait SlidingEnds {
     /// α
     fn stiffness(&self) -> f64;
 
-    /// Delay of the force where a slip ends with the motion −r times that at which slip begins, and its derivative by r.
+    /// Fills the pieces as [`PiecewiseLinear::pieces_at`] does, and returns the time by which their half turn does not repeat itself.
+    ///
+    /// # Errors
+    /// Those of [`PiecewiseLinear::pieces`].
+    fn follow(
+        &self,
+        at: (&HarmonicSet, &[f64], f64),
+        turning_points: &[Extremum],
+        pieces: &mut Vec<Piece>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<f64>;
+
+    /// Delay of the force over ω, where a slip ends with the motion −r times that at which slip begins, and its derivative by r.
     fn delay(&self, r: f64) -> [f64; 2];
 }
 

@@ -50,7 +50,7 @@ pub struct SlidingMass {
     pub stiffness: f64,
     /// fc
     pub limit: f64,
-    /// 1/h_r, 0 for a rigid slider.
+    /// 1/(h_r ω), 0 for a rigid slider.
     pub late: f64,
 }
 
@@ -112,6 +112,57 @@ impl SlidingMass {
         self.push(last, repeated, pieces);
         Ok(Some(HalfTurn { next, nearest, sticks }))
     }
+
+    /// Follows half turns until one repeats itself, and leaves its pieces: returns the time by which the last one did not.
+    fn follow_half_turns(
+        &self,
+        (set, motion, omega): (&HarmonicSet, &[f64], f64),
+        turning_points: &[Extremum],
+        pieces: &mut Vec<Piece>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<f64> {
+        if !set.is_odd() {
+            return fail!(Internal, "a sliding mass needs odd harmonics alone");
+        }
+        let mut walk = SlideWalk {
+            set,
+            motion,
+            extrema: turning_points,
+            at: 0,
+            range: self.range(),
+            late: self.late * omega,
+        };
+        let Some(mut begin) = walk.first_onset() else {
+            self.push(Event::at(0.0, 0.0), Event::at(PI, 0.0), pieces);
+            return Ok(0.0);
+        };
+        let mut apart = PI;
+        for _ in 0..MOST_HALF_TURNS {
+            pieces.clear();
+            begin = walk.rebased(begin);
+            let (end, from) = (begin.tau + PI, walk.at);
+            let Some(followed) = self.half_turn(&mut walk, begin, pieces, interrupt)? else {
+                return Ok(0.0);
+            };
+            let start = core::mem::replace(&mut begin, followed.next);
+            let Some((event, by_begin)) = followed.nearest else {
+                apart = PI;
+                continue;
+            };
+            let off = event.tau - end;
+            apart = off.abs();
+            if apart <= SAME_TIME {
+                return Ok(0.0);
+            }
+            // A mass that never sticks: Newton's method for the begin of a slip.
+            let step = off / (1.0 - by_begin);
+            if !followed.sticks && step.abs() < 0.5 * PI {
+                begin = walk.moved_begin((start, from), step).unwrap_or(begin);
+            }
+        }
+        // Where slips hardly begin, several half turns repeat themselves together; motions on the way to a solution need not at all.
+        Ok(apart)
+    }
 }
 
 /// Half a turn that was followed.
@@ -147,44 +198,18 @@ impl PiecewiseLinear for SlidingMass {
         pieces: &mut Vec<Piece>,
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        if !set.is_odd() {
-            return fail!(Internal, "a sliding mass needs odd harmonics alone");
-        }
-        let mut walk = SlideWalk {
-            set,
-            motion,
-            extrema: turning_points,
-            at: 0,
-            range: self.range(),
-            late: self.late,
-        };
-        let Some(mut begin) = walk.first_onset() else {
-            self.push(Event::at(0.0, 0.0), Event::at(PI, 0.0), pieces);
-            return Ok(());
-        };
-        for _ in 0..MOST_HALF_TURNS {
-            pieces.clear();
-            begin = walk.rebased(begin);
-            let (end, from) = (begin.tau + PI, walk.at);
-            let Some(followed) = self.half_turn(&mut walk, begin, pieces, interrupt)? else {
-                return Ok(());
-            };
-            let start = core::mem::replace(&mut begin, followed.next);
-            let Some((event, by_begin)) = followed.nearest else {
-                continue;
-            };
-            let off = event.tau - end;
-            if off.abs() <= SAME_TIME {
-                return Ok(());
-            }
-            // A mass that never sticks: Newton's method for the begin of a slip.
-            let step = off / (1.0 - by_begin);
-            if !followed.sticks && step.abs() < 0.5 * PI {
-                begin = walk.moved_begin((start, from), step).unwrap_or(begin);
-            }
-        }
-        // Where slips hardly begin, several half turns repeat themselves together; motions on the way to a solution need not at all.
-        Ok(())
+        // Ever slower: no force is late.
+        self.pieces_at((set, motion, 0.0), turning_points, pieces, interrupt)
+    }
+
+    fn pieces_at(
+        &self,
+        at: (&HarmonicSet, &[f64], f64),
+        turning_points: &[Extremum],
+        pieces: &mut Vec<Piece>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        self.follow(at, turning_points, pieces, interrupt).map(|_| ())
     }
 
     fn sampled_pieces(&self, samples: &[f64], pieces: &mut Vec<Piece>) {
@@ -214,4 +239,18 @@ impl SlidingEnds for SlidingMass {
     fn delay(&self, r: f64) -> [f64; 2] {
         lateness(r).map(|g| self.late * g)
     }
+
+    fn follow(
+        &self,
+        at: (&HarmonicSet, &[f64], f64),
+        turning_points: &[Extremum],
+        pieces: &mut Vec<Piece>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<f64> {
+        self.follow_half_turns(at, turning_points, pieces, interrupt)
+    }
 }
+
+#[cfg(test)]
+#[path = "sliding_mass_tests.rs"]
+mod tests;

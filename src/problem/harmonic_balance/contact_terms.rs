@@ -54,6 +54,7 @@ pub(super) fn add_products(
             _ if forces.is_inactive(c) => Complex64::ZERO,
             None => forces.by_omega(c, i),
             Some((Path::ScaledLaws, _)) => forces.d_ln_scale(c, i),
+            Some((Path::Stiffening, _)) => forces.d_ln_stiffening(c, i),
             Some((Path::GrowingLoad | Path::FromTangents, _)) => Complex64::ZERO,
         };
         depends |= *z != Complex64::ZERO;

@@ -115,16 +115,15 @@ impl<'a> Orbit<'a> {
         let Maker::Law(law) = self.maker else {
             return Ok(Account::default());
         };
-        let PeriodicMotion { set, packed, .. } = self.motion;
         match law.form() {
             Form::PiecewiseLinear(_) if self.actual.is_some() => {
-                let shares = ScalarOrbit::new(set, packed, law, interrupt)?.account();
+                let shares = ScalarOrbit::new(self.motion, law, interrupt)?.account();
                 let found = self.evaluated(law, interrupt)?;
                 let work = if shares.slip == 0.0 { 0.0 } else { found.work };
                 Ok(Account { work, ..shares })
             }
             Form::PiecewiseLinear(_) | Form::Spectral(_) => {
-                Ok(ScalarOrbit::new(set, packed, law, interrupt)?.account())
+                Ok(ScalarOrbit::new(self.motion, law, interrupt)?.account())
             }
             // A force that follows from one motion alone has a potential.
             Form::Memoryless(law) if law.directions() == 1 && !law.uses_velocity() => Ok(Account::default()),

@@ -60,7 +60,7 @@ impl<'a> Follower<'a> {
     ) -> Result<Self> {
         let PeriodicMotion { set, packed, .. } = motion;
         let way = match law.form() {
-            Form::PiecewiseLinear(_) | Form::Spectral(_) => Way::Scalar(ScalarOrbit::new(set, packed, law, interrupt)?),
+            Form::PiecewiseLinear(_) | Form::Spectral(_) => Way::Scalar(ScalarOrbit::new(motion, law, interrupt)?),
             Form::VaryingNormalLoad(law) => Way::Coupled(CoupledOrbit::new(set, packed, law, interrupt)?),
             Form::PlaneFriction(law) => Way::Plane(boxed(|| PlaneOrbit::new(&motion, law, interrupt))?),
             Form::Hysteretic(law) => Way::MarchedForces(MarchedForces::new(&motion, n, (law, samples), interrupt)?),

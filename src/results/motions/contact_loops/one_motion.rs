@@ -10,7 +10,7 @@ use crate::error::{Error, Result, try_push};
 use crate::fourier::HarmonicSet;
 use crate::fourier::{TurningPoints, jet};
 use crate::interrupt::Interrupt;
-use crate::results::motions::contact_loops::period::{Account, CONTEXT, extrema};
+use crate::results::motions::contact_loops::period::{Account, CONTEXT, PeriodicMotion, extrema};
 use std::f64::consts::{PI, TAU};
 
 /// A law of the form `PiecewiseLinear` or `Spectral` under a packed motion.
@@ -24,11 +24,17 @@ pub struct ScalarOrbit<'a> {
 }
 
 impl<'a> ScalarOrbit<'a> {
-    /// Locates the events of `law`, if it has any.
+    /// Locates the events of `law` under a motion of one direction, if it has any.
     ///
     /// # Errors
     /// `OutOfMemory`, `StoppedByCaller`.
-    pub fn new(set: &'a HarmonicSet, motion: &'a [f64], law: &'a dyn Law, interrupt: &Interrupt<'_>) -> Result<Self> {
+    pub fn new(at: PeriodicMotion<'a>, law: &'a dyn Law, interrupt: &Interrupt<'_>) -> Result<Self> {
+        let PeriodicMotion {
+            set,
+            packed: motion,
+            omega,
+            ..
+        } = at;
         let (mut pieces, mut anchors) = (Vec::new(), Vec::new());
         if let Form::PiecewiseLinear(law) = law.form() {
             let mut turning_points = extrema(set)?;
@@ -36,7 +42,7 @@ impl<'a> ScalarOrbit<'a> {
             pieces
                 .try_reserve(law.most_pieces(set.highest_reduced()))
                 .map_err(|_| Error::out_of_memory(CONTEXT))?;
-            law.pieces(set, motion, &turning_points, &mut pieces, interrupt)?;
+            law.pieces_at((set, motion, omega), &turning_points, &mut pieces, interrupt)?;
         }
         for piece in &pieces {
             interrupt.check_before(motion.len() as u64)?;

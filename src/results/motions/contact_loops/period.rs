@@ -9,7 +9,7 @@ pub(super) const CONTEXT: &str = "the loop of a contact";
 
 /// The relative motions of a contact, in the units of its law.
 #[derive(Clone, Copy)]
-pub(super) struct PeriodicMotion<'a> {
+pub struct PeriodicMotion<'a> {
     pub set: &'a HarmonicSet,
     /// Packed motions, d·m numbers, one direction after the other.
     pub packed: &'a [f64],
