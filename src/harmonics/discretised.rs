@@ -76,8 +76,10 @@ pub(crate) trait LinearParts {
         Ok(None)
     }
 
-    /// Selects the most accurate evaluation for [`Self::linear_at`].
-    fn set_accurate(&mut self, _accurate: bool) {}
+    /// Selects the most accurate evaluation for [`Self::linear_at`]; `false` if that is the ordinary one.
+    fn set_accurate(&mut self, _accurate: bool) -> bool {
+        false
+    }
 
     /// Largest share of its linear range that a contact uses at a point.
     fn linear_share(&mut self, _point: &Point) -> Result<f64> {

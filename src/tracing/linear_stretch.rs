@@ -348,7 +348,11 @@ impl BranchTracer<'_> {
         let Some(near) = self.stationary(analysis, kind, from, ends)? else {
             return Ok(());
         };
-        analysis.set_accurate(true);
+        // The first search has found the maximum to rounding where its evaluations are the most accurate ones.
+        if !analysis.set_accurate(true) {
+            analysis.set_accurate(false);
+            return self.record_on_line(analysis, kind, near);
+        }
         let accurate = self.stationary_near(analysis, kind, &near, (ends[0].0, ends[1].0));
         let recorded = accurate.and_then(|peak| {
             let peak = match peak {

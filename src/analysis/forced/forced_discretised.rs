@@ -530,8 +530,9 @@ impl LinearParts for ForcedDiscretised<'_> {
         }
     }
 
-    fn set_accurate(&mut self, accurate: bool) {
+    fn set_accurate(&mut self, accurate: bool) -> bool {
         self.linear_response.accurate = accurate;
+        self.resolutions.current.resolution.condensed.ndof() > FACTORISE_UP_TO
     }
 
     fn linear_share(&mut self, point: &Point) -> Result<f64> {

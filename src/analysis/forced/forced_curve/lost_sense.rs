@@ -96,8 +96,8 @@ impl LinearParts for Misled<'_, '_> {
         self.response.linear_at(near, parameter, interrupt)
     }
 
-    fn set_accurate(&mut self, accurate: bool) {
-        self.response.set_accurate(accurate);
+    fn set_accurate(&mut self, accurate: bool) -> bool {
+        self.response.set_accurate(accurate)
     }
 
     fn linear_share(&mut self, point: &Point) -> Result<f64> {
