@@ -41,6 +41,12 @@ pub const ROWS: &[Row] = &[
         run: || sliding(200),
     },
     Row {
+        name: "chain of 100, 1 slider, H 3, start of a narrow sweep",
+        unit: Unit::Lu11,
+        stored: 10_800.0,
+        run: narrow,
+    },
+    Row {
         name: "chain of 12, a mass split by 1e8 k, H 5, a point",
         unit: Unit::Lu11,
         stored: 42.8,
@@ -130,6 +136,21 @@ fn sliding(n: usize) -> Result<Work> {
         ..SolverOptions::default()
     };
     Ok(per_point(response(&model, &solver, (TAU, 195.0))?))
+}
+
+/// The first point of a sweep about one of a hundred resonances: mostly the preparation.
+fn narrow() -> Result<Work> {
+    let mut model = chain(&[1e4; 101], (0.0, 1e-6))?;
+    model.add_contact(&Contact::jenkins(50, None, 1e4, 0.9, 1.0))?;
+    model.add_force(2, 1, 5.0.into())?;
+    let solver = SolverOptions {
+        harmonics: 3,
+        response_dof: Some(2),
+        tolerance: 0.0,
+        max_points: 1,
+        ..SolverOptions::default()
+    };
+    response(&model, &solver, (6.16, 6.28))
 }
 
 fn penalty() -> Result<Work> {

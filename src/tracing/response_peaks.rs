@@ -10,6 +10,7 @@ use crate::harmonics::discretised::Traceable;
 use crate::linalg::norm;
 use crate::results::SpecialKind;
 use crate::tracing::course::BranchTracer;
+use num_complex::Complex64;
 
 const CONTEXT: &str = "the peaks of a response";
 
@@ -228,12 +229,22 @@ fn predicted_brackets(tracer: &BranchTracer<'_>, a: &Point, b: &Point) -> Result
         difference * 3.0 - slopes[0] * 2.0 - slopes[1],
         slopes[0] + slopes[1] - difference * 2.0,
     );
-    let growth = |s: f64| {
-        let z = a.amplitude + (slopes[0] + (c2 + c3 * s) * s) * s;
-        let dz = slopes[0] + (c2 * 2.0 + c3 * (3.0 * s)) * s;
-        (z.conj() * dz).re
-    };
-    let mut before = (0.0, growth(0.0));
+    let (c0, c1) = (a.amplitude, slopes[0]);
+    let product = |x: Complex64, y: Complex64| x.re * y.re + x.im * y.im;
+    // Re z̄ z′ as a polynomial of s. Where its first coefficient outweighs the others it keeps its sign.
+    let first = product(c0, c1);
+    let others = [
+        product(c1, c1) + 2.0 * product(c0, c2),
+        3.0 * (product(c0, c3) + product(c1, c2)),
+        4.0 * product(c1, c3) + 2.0 * product(c2, c2),
+        5.0 * product(c2, c3),
+        3.0 * product(c3, c3),
+    ];
+    if first.abs() > others.iter().map(|c| c.abs()).sum::<f64>() {
+        return Ok(found);
+    }
+    let growth = |s: f64| others.iter().rev().fold(0.0, |sum, c| (sum + c) * s) + first;
+    let mut before = (0.0, first);
     for part in 1..=PARTS_OF_ARC {
         let s = part as f64 / PARTS_OF_ARC as f64;
         let here = (s, growth(s));

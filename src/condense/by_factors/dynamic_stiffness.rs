@@ -238,8 +238,11 @@ impl DynamicStiffness {
         x: &mut [Complex64],
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        let plain = self.refinement((condensed, i), at, b, x, false, interrupt)?;
-        let mut shrinkage = plain.max(self.rounding_of_matrix(&condensed.blocks()[i], b, x));
+        let mut shrinkage = self.rounding_of_matrix(&condensed.blocks()[i], b, x);
+        // Where that alone asks for exact residuals, the first of them does what a plain one would.
+        if shrinkage <= NOISE {
+            shrinkage = shrinkage.max(self.refinement((condensed, i), at, b, x, false, interrupt)?);
+        }
         let (mut error, mut before) = (shrinkage, f64::INFINITY);
         let mut enough = NOISE;
         for _ in 0..EXACT {
@@ -249,10 +252,12 @@ impl DynamicStiffness {
             // The bound is below the digits that are asked for, once they take residuals of this kind.
             enough = 0.1 * NOISE;
             let change = self.refinement((condensed, i), at, b, x, true, interrupt)?;
-            if before.is_finite() {
+            shrinkage = if before.is_finite() {
                 // Without a change the ratio is none, and the error is zero.
-                shrinkage = shrinkage.min(change / before);
-            }
+                shrinkage.min(change / before)
+            } else {
+                shrinkage.max(change)
+            };
             (error, before) = (shrinkage * change, change);
         }
         Ok(())

@@ -4,8 +4,9 @@ use crate::error::{Result, Status, fail, try_copy, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::hermitian;
 use crate::linalg::dense::real_pencil;
+use crate::linalg::dense::small_pencil;
 use crate::linalg::factors::lu::Lu;
-use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
+use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the eigenvalues of a matrix";
@@ -18,10 +19,6 @@ pub struct Pairs {
     /// Vectors φ with φᴴ M φ = 1; one column per eigenvalue.
     pub vectors: DMatrix<Complex64>,
 }
-
-/// Iteration cap of the dense eigensolver, far above what converging cases need.
-/// Kind: cap.
-const MAX_ITERATIONS: usize = 100_000;
 
 /// Order up to which the eigensolver of nalgebra is so quick that nobody needs to interrupt it.
 /// Kind: tuned; measured on: not recorded.
@@ -73,27 +70,12 @@ fn in_one_unit(k: &DMatrix<Complex64>, m: &DMatrix<Complex64>, interrupt: &Inter
     {
         return Ok(pairs);
     }
-    // The common case, M positive definite: L⁻¹ K L⁻ᴴ has the smallest rounding error.
+    // The common case, M positive definite.
     if n <= SMALL_UP_TO
-        && let Some(cholesky) = Cholesky::new(m.clone())
+        && let Some((values, vectors)) = small_pencil::with_definite_mass(k, m, REGULAR)?
     {
-        let l = cholesky.l();
-        // The complex root of a negative pivot exists: it is imaginary, and its real part is rounding.
-        let is_definite = l.diagonal().iter().all(|x| x.im.abs() <= REGULAR * x.re);
-        let diagonal = l.diagonal().map(|x| x.re);
-        if is_definite && diagonal.min() > REGULAR * diagonal.max() {
-            let (Some(left), true) = (l.solve_lower_triangular(k), n > 0) else {
-                return fail!(NotPositiveDefinite, "mass matrix is not positive definite");
-            };
-            let Some(a) = l.solve_lower_triangular(&left.adjoint()) else {
-                return fail!(NotPositiveDefinite, "mass matrix is not positive definite");
-            };
-            let (values, vectors) = hermitian(&a, interrupt)?;
-            let Some(vectors) = l.adjoint().solve_upper_triangular(&vectors) else {
-                return fail!(NotPositiveDefinite, "mass matrix is not positive definite");
-            };
-            return Ok(Pairs { values, vectors });
-        }
+        interrupt.check()?;
+        return Ok(Pairs { values, vectors });
     }
     let (mass, u) = hermitian(m, interrupt)?;
     let largest = mass.last().copied().unwrap_or(0.0);
@@ -248,20 +230,13 @@ fn product(a: &DMatrix<Complex64>, b: &DMatrix<Complex64>, interrupt: &Interrupt
 fn hermitian(a: &DMatrix<Complex64>, interrupt: &Interrupt<'_>) -> Result<(Vec<f64>, DMatrix<Complex64>)> {
     interrupt.check()?;
     let n = a.nrows();
+    if n <= SMALL_UP_TO {
+        return small_pencil::hermitian(a);
+    }
     let half = Complex64::new(0.5, 0.0);
     let mut symmetric = filled(n, n, |i, j| (a[(i, j)] + a[(j, i)].conj()) * half)?;
-    if n > SMALL_UP_TO {
-        let (values, vectors) = hermitian::eigen(symmetric.as_mut_slice(), n, interrupt)?;
-        return Ok((values, DMatrix::from_vec(n, n, vectors)));
-    }
-    let Some(eigen) = SymmetricEigen::try_new(symmetric, f64::EPSILON, MAX_ITERATIONS) else {
-        return fail!(NoConvergence, "the eigenvalues of a matrix of order {n} were not found");
-    };
-    let mut order: Vec<usize> = (0..n).collect();
-    order.sort_by(|&i, &j| eigen.eigenvalues[i].total_cmp(&eigen.eigenvalues[j]));
-    let values = order.iter().map(|&i| eigen.eigenvalues[i]).collect();
-    let vectors = DMatrix::from_fn(n, n, |i, j| eigen.eigenvectors[(i, order[j])]);
-    Ok((values, vectors))
+    let (values, vectors) = hermitian::eigen(symmetric.as_mut_slice(), n, interrupt)?;
+    Ok((values, DMatrix::from_vec(n, n, vectors)))
 }
 
 #[cfg(test)]

@@ -10,4 +10,5 @@ pub mod hermitian;
 pub mod least_squares;
 pub(crate) mod real_pencil;
 pub(crate) mod reflections;
+mod small_pencil;
 pub(crate) mod tridiagonal;
