@@ -4845,7 +4845,8 @@ hbvib_status hbvib_wheel_identify(const hbvib_model *cyclic,
 /// first        receives the number of the first mode, or NULL.
 /// left_out     receives the largest relative error of a frequency of the tuned modes by the modes
 ///              of the blade that are left out, as estimated, with all contacts stuck and with all
-///              of them free; infinity where one lies above the first of these; or NULL.
+///              of them free; infinity where one lies above the first of these; NaN, unknown, where
+///              matrices of a speed act: compare natural frequencies of both sectors; or NULL.
 /// out          receives the new sector; untouched on error. Free it by hbvib_model_free.
 /// Errors: HBVIB_E_ARGUMENT (modes, families; dofs twice, fixed, on the right face, with a contact
 /// or spring, or coupled to another sector), HBVIB_E_INDEX, HBVIB_E_DIMENSION (lengths),
