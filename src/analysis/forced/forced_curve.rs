@@ -319,11 +319,8 @@ fn follow(
         interrupt,
     )?;
     let mut branch = response.finish(model, solver, &ending, tracer.estimates())?;
-    tell_end(
-        &mut branch,
-        (length, tracer.unbounded_at()),
-        inside.map(|_| tracer.merged_at()),
-    );
+    let bounds = (length, tracer.unbounded_at());
+    tell_end(&mut branch, bounds, inside.map(|_| tracer.merged_at()));
     Ok(Ok(branch))
 }
 

@@ -65,7 +65,7 @@ fn collect(key: &str, value: &Value, folder: &Path, named: &mut Vec<Named>) {
             let own = key.rsplit('.').next().unwrap_or(key);
             let ends = |name: &&str| own == *name || own.strip_suffix(name).is_some_and(|rest| rest.ends_with('_'));
             // The places of sliders from which a job begins.
-            let is_written = WRITTEN.iter().any(|name| ends(&name)) && key != "residual.npz";
+            let is_written = WRITTEN.iter().any(ends) && key != "residual.npz";
             let file = folder.join(text);
             if is_written || file.is_file() {
                 named.push(Named {
