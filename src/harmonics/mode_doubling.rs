@@ -4,6 +4,7 @@
 //! Each is taken over the size to which its error is relative: that of the damping ratio is a unit of the branch, since along a
 //! backbone the ratio passes through zero.
 
+use crate::condense::by_factors::dynamic_stiffness::DampedFrequency;
 use crate::error::Result;
 use crate::harmonics::doubling::Doubling;
 use crate::harmonics::estimate::Estimate;
@@ -29,7 +30,7 @@ impl ModeSeries {
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new((omega, damping): (f64, f64), unit: f64, tolerance: f64) -> Result<Self> {
+    pub fn new(DampedFrequency { omega, damping }: DampedFrequency, unit: f64, tolerance: f64) -> Result<Self> {
         let start = || Doubling::new(&[1.0.into()], false);
         Ok(Self {
             omega,
@@ -168,7 +169,7 @@ mod tests {
             let (a, b) = (d_omega * 3f64.powi(-k), d_damping * 5f64.powi(-k));
             estimate(omega + d_omega - a, damping + d_damping - b)
         };
-        let mut series = ModeSeries::new((omega, damping), unit, 0.0).unwrap();
+        let mut series = ModeSeries::new(DampedFrequency { omega, damping }, unit, 0.0).unwrap();
         let mut extensions = 0;
         while !series.has_settled() {
             extensions += 1;
@@ -183,7 +184,7 @@ mod tests {
         let mut ratios = ModeRatios::default();
         series.note(&mut ratios, 3);
         for (tolerance, serves) in [(0.5, true), (1e-3, false)] {
-            let mut next = ModeSeries::new((omega, damping), unit, tolerance).unwrap();
+            let mut next = ModeSeries::new(DampedFrequency { omega, damping }, unit, tolerance).unwrap();
             next.add(&at(1));
             let scaled = next.scaled(&mut ratios, 3, &at(1));
             assert_eq!(scaled.is_some(), serves);

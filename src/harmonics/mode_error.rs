@@ -1,5 +1,6 @@
 //! The error of a point of a nonlinear mode, including those of its frequency and damping ratio.
 
+use crate::condense::by_factors::dynamic_stiffness::DampedFrequency;
 use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::error::{Result, boxed, try_copy, try_push, try_vec};
@@ -205,7 +206,7 @@ impl<'a> ModeEstimator<'a> {
     ) -> Result<Option<Estimate>> {
         let mut highest = least;
         let mut series = ModeSeries::new(
-            (solved.omega, state.damping),
+            DampedFrequency::new(solved.omega, state.damping),
             state.damping_unit,
             self.options.tolerance,
         )?;
@@ -326,12 +327,12 @@ impl<'a> ModeEstimator<'a> {
         let n = system.problem.size();
         let a = 10f64.powf(p);
         let mut point = solved.extended(condensed, n, 1.0 / a)?;
-        Epmc::set_frequency_and_damping(self.linear, (solved.omega, damping), &mut point);
+        Epmc::set_frequency_and_damping(self.linear, DampedFrequency::new(solved.omega, damping), &mut point);
         let mut start = try_copy(&point, CONTEXT)?;
         if let Some(from) = from {
             let unit = a * condensed.length();
             set.transfer(&from.set, &from.motion, 1.0 / unit, &mut start[..n - 2]);
-            Epmc::set_frequency_and_damping(self.linear, (from.omega, from.damping), &mut start);
+            Epmc::set_frequency_and_damping(self.linear, DampedFrequency::new(from.omega, from.damping), &mut start);
         }
         if !system.evaluate(&start)? {
             return Ok(None);
@@ -368,8 +369,7 @@ impl<'a> ModeEstimator<'a> {
             return Ok(None);
         };
         let z = extended.corrected()?;
-        let (omega2, damping2) = Epmc::frequency_and_damping(self.linear, &z);
-        let (omega1, damping1) = Epmc::frequency_and_damping(self.linear, &extended.at);
+        let [two, one] = [&z, &extended.at].map(|u| Epmc::frequency_and_damping(self.linear, u));
         let unit = a * condensed.length();
         let row = condensed.motion_row(set.fundamental(), self.response)?;
         let response = |shape: &[Complex64]| row.along(shape) * unit;
@@ -404,8 +404,8 @@ impl<'a> ModeEstimator<'a> {
             motion: known(change + norm(&extended.next[..n - 2]) / size),
             response: known(relative((response - solved.response).norm() + next, response)),
             responses: Vec::new(),
-            frequency: known(((omega2 - solved.omega).abs() + (omega2 - omega1).abs()) / omega2),
-            damping: known((damping2 - damping).abs() + (damping2 - damping1).abs()),
+            frequency: known(((two.omega - solved.omega).abs() + (two.omega - one.omega).abs()) / two.omega),
+            damping: known((two.damping - damping).abs() + (two.damping - one.damping).abs()),
             harmonics: highest,
             steps: extended.steps,
             change,
@@ -415,8 +415,8 @@ impl<'a> ModeEstimator<'a> {
                 motion: packed,
                 response,
                 watched: Vec::new(),
-                omega: omega2,
-                damping: damping2,
+                omega: two.omega,
+                damping: two.damping,
                 rates: Vec::new(),
             },
         }))

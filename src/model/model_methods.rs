@@ -251,7 +251,7 @@ impl Model {
     ///
     /// # Errors
     /// `Argument` for a diameter of a plain structure, `NotHermitian` when K or M is not, and those of
-    /// [`eigen::generalised`].
+    /// [`eigen::generalised`](crate::linalg::dense::eigen::generalised).
     pub fn linear_modes(&self, diameter: i64, contacts: ContactState<'_>) -> Result<LinearModes> {
         linear_modes(self, diameter, contacts)
     }

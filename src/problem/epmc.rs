@@ -15,6 +15,7 @@ mod functional;
 mod mode_products;
 
 use crate::condense::Condensed;
+use crate::condense::by_factors::dynamic_stiffness::DampedFrequency;
 use crate::condense::by_modes::mode_flexibility::ModeFlexibility;
 use crate::contact::forms::onset::Onset;
 use crate::error::{Result, boxed, fail, try_push, try_vec};
@@ -205,16 +206,20 @@ impl<'a> Epmc<'a> {
 
     /// Frequency and damping ratio from the unknowns.
     #[must_use]
-    pub fn frequency_and_damping(linear: &LinearMode, u: &[f64]) -> (f64, f64) {
+    pub fn frequency_and_damping(linear: &LinearMode, u: &[f64]) -> DampedFrequency {
         let n = u.len();
-        (
-            linear.omega * (EPMC_OMEGA_UNIT * u[n - 2]).exp(),
-            linear.damping + DAMPING_UNIT * u[n - 1],
-        )
+        DampedFrequency {
+            omega: linear.omega * (EPMC_OMEGA_UNIT * u[n - 2]).exp(),
+            damping: linear.damping + DAMPING_UNIT * u[n - 1],
+        }
     }
 
     /// Sets the unknowns that represent frequency and damping ratio.
-    pub fn set_frequency_and_damping(linear: &LinearMode, (omega, damping): (f64, f64), u: &mut [f64]) {
+    pub fn set_frequency_and_damping(
+        linear: &LinearMode,
+        DampedFrequency { omega, damping }: DampedFrequency,
+        u: &mut [f64],
+    ) {
         let n = u.len();
         u[n - 2] = (omega / linear.omega).ln() / EPMC_OMEGA_UNIT;
         u[n - 1] = (damping - linear.damping) / DAMPING_UNIT;
@@ -410,7 +415,8 @@ impl<'a> Epmc<'a> {
         self.forces.set_scale(s);
         let n = u.len();
         let motion = &u[..n - 2];
-        let (omega, damping) = Self::frequency_and_damping(self.linear, u);
+        let damped = Self::frequency_and_damping(self.linear, u);
+        let omega = damped.omega;
         if !(omega >= VANISHED * self.linear.omega && omega.is_finite()) {
             return fail!(Singular, "the angular frequency became {omega}: no vibration is left");
         }
@@ -434,7 +440,7 @@ impl<'a> Epmc<'a> {
             let interrupt = self.forces.interrupt();
             interrupt.check()?;
             self.structure
-                .solve(self.condensed, i, (omega, damping), &self.memory.w, interrupt)?;
+                .solve(self.condensed, i, damped, &self.memory.w, interrupt)?;
             self.memory.x[i * dofs..(i + 1) * dofs].copy_from_slice(self.structure.x());
             self.derivatives.tables[i].copy_from_slice(self.structure.value());
             let share = if mean { MEAN_SHARE } else { 1.0 };

@@ -1,6 +1,7 @@
 //! The adjoint of one result at one solution, on the whole structure.
 
 use crate::condense::Condensed;
+use crate::condense::by_factors::dynamic_stiffness::DampedFrequency;
 use crate::error::{Result, try_vec};
 use crate::model::matrices::spring::{Row, along};
 use num_complex::Complex64;
@@ -36,7 +37,11 @@ impl Adjoint {
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub(super) fn new(condensed: &Condensed, (omega, damping): (f64, f64), relative: Vec<f64>) -> Result<Self> {
+    pub(super) fn new(
+        condensed: &Condensed,
+        DampedFrequency { omega, damping }: DampedFrequency,
+        relative: Vec<f64>,
+    ) -> Result<Self> {
         let size = condensed
             .degrees()
             .independent()

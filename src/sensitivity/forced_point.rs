@@ -2,6 +2,7 @@
 //!
 //! One transposed solution of Newton's matrix, and one of the structure per harmonic.
 
+use crate::condense::by_factors::dynamic_stiffness::DampedFrequency;
 use crate::condense::by_factors::flexibility::Workspace;
 use crate::condense::by_factors::near_rigid_motion;
 use crate::condense::{Condensed, HarmonicBlock};
@@ -349,7 +350,7 @@ impl<'a> ForcedPoint<'a> {
         for _ in wanted {
             try_push(
                 &mut found,
-                Adjoint::new(condensed, (omega, 0.0), try_copy(u, CONTEXT)?)?,
+                Adjoint::new(condensed, DampedFrequency::new(omega, 0.0), try_copy(u, CONTEXT)?)?,
                 CONTEXT,
             )?;
         }

@@ -1,6 +1,7 @@
 //! The adjoint of the frequency or of the damping ratio of a nonlinear mode at a fixed amplitude.
 
 use crate::condense::Condensed;
+use crate::condense::by_factors::dynamic_stiffness::DampedFrequency;
 use crate::condense::by_factors::flexibility::Workspace;
 use crate::error::{Result, Status, try_copy, try_vec};
 use crate::interrupt::Interrupt;
@@ -48,7 +49,11 @@ impl ModePointAdjoint<'_> {
         for u in &mut u {
             *u /= amplitude;
         }
-        Epmc::set_frequency_and_damping(self.linear, (self.omega, self.point.damping_ratio), &mut u);
+        Epmc::set_frequency_and_damping(
+            self.linear,
+            DampedFrequency::new(self.omega, self.point.damping_ratio),
+            &mut u,
+        );
         Ok(u)
     }
 
@@ -76,7 +81,11 @@ impl ModePointAdjoint<'_> {
         let mut lambda = try_vec(size, 0.0, CONTEXT)?;
         lambda[unknown] = rate;
         system.solve_transposed(&mut lambda);
-        let mut adjoint = Adjoint::new(condensed, (omega, damping), try_copy(self.motion, CONTEXT)?)?;
+        let mut adjoint = Adjoint::new(
+            condensed,
+            DampedFrequency { omega, damping },
+            try_copy(self.motion, CONTEXT)?,
+        )?;
         adjoint.is_forced = false;
         let amplitude = 10f64.powf(self.point.log10_amplitude);
         let unit = amplitude * condensed.length();

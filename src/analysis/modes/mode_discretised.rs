@@ -3,6 +3,7 @@
 use crate::analysis::modes::mode_equations::{Equations, LinearStart};
 use crate::analysis::modes::mode_onset::OnsetSearch;
 use crate::condense::Reduction;
+use crate::condense::by_factors::dynamic_stiffness::DampedFrequency;
 use crate::continuation::corrector::null_direction::null_direction;
 use crate::continuation::resolve::resolve;
 use crate::continuation::{Metric, Point, Settings};
@@ -195,7 +196,7 @@ impl<'a> ModeDiscretised<'a> {
         };
         let equations = &self.resolutions.current;
         let condensed = &equations.resolution.condensed;
-        let (omega, damping) = Epmc::frequency_and_damping(self.start.linear, point.unknowns());
+        let DampedFrequency { omega, damping } = Epmc::frequency_and_damping(self.start.linear, point.unknowns());
         let solved = Solved {
             condensed,
             motion: &equations.vibration,
@@ -217,7 +218,7 @@ impl<'a> ModeDiscretised<'a> {
     /// Numbers of the point evaluated last. Its errors are unknown where the solution is not isolated, as at a fold.
     fn measure(&mut self, point: &Point, is_singular: bool) -> Result<Numbers> {
         let mode = self.resolutions.current.measure(point, self.start.linear, &self.before);
-        let omega = Epmc::frequency_and_damping(self.start.linear, point.unknowns()).0;
+        let omega = Epmc::frequency_and_damping(self.start.linear, point.unknowns()).omega;
         let equations = &mut *self.resolutions.current;
         let amplitude = equations.response[equations.resolution.condensed.set().fundamental()];
         let sampling_error = equations.problem.sampling_error(&equations.motion, omega)?;
@@ -288,7 +289,7 @@ impl Discretised for ModeDiscretised<'_> {
         let unit = 10f64.powf(point.parameter()) * to.length();
         to.set()
             .transfer(&corrected.set, &corrected.motion, 1.0 / unit, &mut start.v[..n]);
-        let both = (corrected.omega, corrected.damping);
+        let both = DampedFrequency::new(corrected.omega, corrected.damping);
         Epmc::set_frequency_and_damping(self.start.linear, both, &mut start.v[..n + 2]);
         Ok(start)
     }
@@ -307,7 +308,7 @@ impl Discretised for ModeDiscretised<'_> {
         let errors = (estimate.frequency, estimate.damping);
         self.errors.estimated = Some(errors);
         self.errors.last = errors;
-        let damping = Epmc::frequency_and_damping(self.start.linear, point.unknowns()).1;
+        let damping = Epmc::frequency_and_damping(self.start.linear, point.unknowns()).damping;
         Ok(Some(Assessment {
             error: self.bounded_error(errors, damping),
             estimate,
@@ -343,7 +344,7 @@ impl Judged for ModeDiscretised<'_> {
     fn level_of_limit_cycles(&self) -> Option<f64> {
         let linear = self.start.linear;
         let mut unknowns = [0.0; 2];
-        Epmc::set_frequency_and_damping(linear, (linear.omega, 0.0), &mut unknowns);
+        Epmc::set_frequency_and_damping(linear, DampedFrequency::new(linear.omega, 0.0), &mut unknowns);
         Some(1.0 + unknowns[1])
     }
 }

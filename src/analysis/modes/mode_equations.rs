@@ -1,5 +1,6 @@
 //! The equations of a nonlinear mode at one resolution, and the measured quantities of a point.
 
+use crate::condense::by_factors::dynamic_stiffness::DampedFrequency;
 use crate::continuation::corrector::Corrector;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_vec};
@@ -130,7 +131,10 @@ impl<'a> Equations<'a> {
         let condensed = &*self.resolution.condensed;
         let n = point.unknowns().len();
         let (u, p) = (point.unknowns(), point.parameter());
-        let (omega, damping_ratio) = Epmc::frequency_and_damping(linear, u);
+        let DampedFrequency {
+            omega,
+            damping: damping_ratio,
+        } = Epmc::frequency_and_damping(linear, u);
         let dofs = condensed.ndof();
         self.forces.copy_from_slice(self.problem.forces().forces());
         let x = self.problem.shape();

@@ -3,6 +3,7 @@
 
 use crate::analysis::forced::forced_discretised::relative_motion;
 use crate::condense::Resolution;
+use crate::condense::by_factors::dynamic_stiffness::DampedFrequency;
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::model::matrices::spring::along;
 use crate::options::ModeGuess;
@@ -53,7 +54,7 @@ pub(crate) fn unknowns(
     for _ in 0..2 {
         try_push(&mut u, 0.0, CONTEXT)?;
     }
-    Epmc::set_frequency_and_damping(linear, (guess.omega, guess.damping_ratio), &mut u);
+    Epmc::set_frequency_and_damping(linear, DampedFrequency::new(guess.omega, guess.damping_ratio), &mut u);
     Ok(u)
 }
 

@@ -7,6 +7,7 @@
 
 use crate::analysis::linear::static_solution::{NEEDS_SPEED, static_state};
 use crate::analysis::modes::mode_equations::{Equations, LinearStart};
+use crate::condense::by_factors::dynamic_stiffness::DampedFrequency;
 use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::continuation::step_control::StepControl;
@@ -99,7 +100,11 @@ impl<'a> TrackedDamping<'a> {
         for u in &mut start[..motion.len()] {
             *u /= amplitude;
         }
-        Epmc::set_frequency_and_damping(linear, (omega, point.damping_ratio), &mut start[..n - 1]);
+        Epmc::set_frequency_and_damping(
+            linear,
+            DampedFrequency::new(omega, point.damping_ratio),
+            &mut start[..n - 1],
+        );
         Ok(Self {
             model,
             parameter,
@@ -229,14 +234,17 @@ impl<'a> TrackedDamping<'a> {
             *to = AMPLITUDE_UNIT * from / of(i);
         }
         last[x] = AMPLITUDE_UNIT * AMPLITUDE_UNIT * row[x];
-        self.last.damping = Epmc::frequency_and_damping(&at.linear, &own).1;
+        self.last.damping = Epmc::frequency_and_damping(&at.linear, &own).damping;
         self.last.d_damping = self.by_parameter(&own, log10, p, &at)?;
         Ok(here.scale)
     }
 
     /// Derivative of the damping ratio by the parameter at a fixed amplitude.
     fn by_parameter(&self, own: &[f64], log10: f64, p: f64, at: &At) -> Result<f64> {
-        let (omega, damping_ratio) = Epmc::frequency_and_damping(&at.linear, own);
+        let DampedFrequency {
+            omega,
+            damping: damping_ratio,
+        } = Epmc::frequency_and_damping(&at.linear, own);
         let (_, motion) = self.motion(own, log10, at)?;
         let adjoint = ModePointAdjoint {
             condensed: &at.condensed,
@@ -314,7 +322,7 @@ impl Tracked for TrackedDamping<'_> {
         let (u, p) = (point.unknowns(), point.parameter());
         let at = self.at(p)?;
         let (own, log10) = (self.own(u, &at.condensed)?, self.log10(u));
-        let (omega, damping) = Epmc::frequency_and_damping(&at.linear, &own);
+        let DampedFrequency { omega, damping } = Epmc::frequency_and_damping(&at.linear, &own);
         let (vibration, _) = self.motion(&own, log10, &at)?;
         let solved = Solved {
             condensed: &at.condensed,
@@ -351,7 +359,7 @@ impl Tracked for TrackedDamping<'_> {
         let motions = self.motions();
         let unit = 10f64.powf(self.log10(&v[..motions + 3])) * self.length;
         set.transfer(&corrected.set, &corrected.motion, 1.0 / unit, &mut v[..motions]);
-        let both = (corrected.omega, corrected.damping);
+        let both = DampedFrequency::new(corrected.omega, corrected.damping);
         Epmc::set_frequency_and_damping(self.linear, both, &mut v[..motions + 2]);
     }
 
@@ -368,7 +376,7 @@ impl Tracked for TrackedDamping<'_> {
         self.equations(u, p, true, &mut values)?;
         let At { condensed, linear, .. } = self.at(p)?;
         let (own, log10) = (self.own(u, &condensed)?, self.log10(u));
-        let omega = Epmc::frequency_and_damping(&linear, &own).0;
+        let omega = Epmc::frequency_and_damping(&linear, &own).omega;
         let resolution = Resolution {
             condensed: Arc::new(condensed),
             samples: self.solver.samples,

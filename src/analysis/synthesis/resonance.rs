@@ -3,6 +3,7 @@
 use crate::analysis::synthesis::computed_peak::AtPeak;
 use crate::analysis::synthesis::oscillator::{Load, State};
 use crate::condense::Condensed;
+use crate::condense::by_factors::dynamic_stiffness::DampedFrequency;
 use crate::continuation::special_points::Locator;
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Point, Settings};
@@ -224,7 +225,10 @@ impl<'a> Refinement<'a> {
         for (y, rest) in self.motion.iter_mut().step_by(packed).zip(&rest.motion) {
             *y += rest;
         }
-        let (omega, damping_ratio) = Epmc::frequency_and_damping(&self.data.linear, &v[..n]);
+        let DampedFrequency {
+            omega,
+            damping: damping_ratio,
+        } = Epmc::frequency_and_damping(&self.data.linear, &v[..n]);
         let unit = 10f64.powf(p) * condensed.length();
         let i = condensed.set().fundamental();
         let energy = balance(condensed, omega, problem.shape(), &[], &[]).twice_mean_kinetic;

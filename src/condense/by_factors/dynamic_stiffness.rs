@@ -15,6 +15,19 @@ use crate::linalg::factors::slender_lu::SlenderLu;
 use crate::linalg::sparse_storage::sparse::Csc;
 use num_complex::Complex64;
 
+/// Angular frequency and artificial damping ratio at which a dynamic stiffness is made; the latter is 0 of a forced response.
+#[derive(Clone, Copy, Debug)]
+pub struct DampedFrequency {
+    pub omega: f64,
+    pub damping: f64,
+}
+
+impl DampedFrequency {
+    pub fn new(omega: f64, damping: f64) -> Self {
+        Self { omega, damping }
+    }
+}
+
 /// Variable of a derivative of Z_κ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Variable {
@@ -233,7 +246,7 @@ impl DynamicStiffness {
         &mut self,
         condensed: &Condensed,
         i: usize,
-        at: (f64, f64),
+        at: DampedFrequency,
         b: &[Complex64],
         x: &mut [Complex64],
         interrupt: &Interrupt<'_>,
@@ -283,14 +296,14 @@ impl DynamicStiffness {
     fn refinement(
         &mut self,
         (condensed, i): (&Condensed, usize),
-        at: (f64, f64),
+        at: DampedFrequency,
         b: &[Complex64],
         x: &mut [Complex64],
         exact: bool,
         interrupt: &Interrupt<'_>,
     ) -> Result<f64> {
         let block = &condensed.blocks()[i];
-        let sum = Combination::value(block, at.0.into(), at.1);
+        let sum = Combination::value(block, at.omega.into(), at.damping);
         self.remainder.copy_from_slice(b);
         if exact {
             sum.exact_product(block, x, &mut self.sums, &mut self.part);
@@ -308,7 +321,7 @@ impl DynamicStiffness {
         let mut remainder = core::mem::take(&mut self.remainder);
         let solved = self.solve_columns(&mut remainder, false, interrupt);
         self.remainder = remainder;
-        solved.map_err(|e| at_harmonic(e, block, at.0))?;
+        solved.map_err(|e| at_harmonic(e, block, at.omega))?;
         let mut change = (0.0_f64, 0.0_f64);
         for row in &block.motions.rows {
             change.0 = change.0.max(row.along(&self.remainder).norm());
@@ -462,7 +475,11 @@ pub(crate) fn add_slope_product(
 }
 
 /// Fills the entries of ∂Z/∂ω of a harmonic, in the order of its pattern.
-pub(crate) fn fill_slope(block: &HarmonicBlock, (omega, damping): (f64, f64), entries: &mut [Complex64]) {
+pub(crate) fn fill_slope(
+    block: &HarmonicBlock,
+    DampedFrequency { omega, damping }: DampedFrequency,
+    entries: &mut [Complex64],
+) {
     let sum = Combination::slope(block, omega.into(), damping, Variable::Omega);
     for (at, entry) in entries.iter_mut().enumerate() {
         *entry = sum.at(block, at);

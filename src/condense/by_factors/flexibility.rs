@@ -4,7 +4,7 @@
 //! With outputs R (rows of W, then the response degree of freedom) and inputs B (Wᴴ, then F), the
 //! table is H = R Z_κ⁻¹ B and ∂H/∂ω = −R Z_κ⁻¹ Z′ Z_κ⁻¹ B, Z′ = −2h²ωM + ihC.
 
-use crate::condense::by_factors::dynamic_stiffness::{DynamicStiffness, Variable, add_slope_product};
+use crate::condense::by_factors::dynamic_stiffness::{DampedFrequency, DynamicStiffness, Variable, add_slope_product};
 use crate::condense::tuned_wheel::tuned_table::Outputs;
 use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, boxed, try_copy, try_push, try_vec};
@@ -258,7 +258,14 @@ impl Workspace {
         }
         for (k, x) in self.columns.chunks_exact_mut(condensed.ndof()).enumerate() {
             fill_load(&condensed.blocks()[i], k, omega, &mut self.load);
-            dynamic.refine(condensed, i, (omega, self.damping), &self.load, x, interrupt)?;
+            dynamic.refine(
+                condensed,
+                i,
+                DampedFrequency::new(omega, self.damping),
+                &self.load,
+                x,
+                interrupt,
+            )?;
         }
         Ok(())
     }
@@ -281,7 +288,7 @@ impl Workspace {
         let outputs = || try_vec(condensed.coordinates() + 1, Complex64::ZERO, CONTEXT);
         let [mut value, mut slope] = [outputs()?, outputs()?];
         let dynamic = made(&mut self.dynamic, condensed)?;
-        let at = (omega, self.damping);
+        let at = DampedFrequency::new(omega, self.damping);
         let x = &mut self.columns[k * n..(k + 1) * n];
         fill_load(block, k, omega, &mut self.load);
         dynamic.refine(condensed, i, at, &self.load, x, interrupt)?;
@@ -403,7 +410,14 @@ impl Workspace {
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         self.solve_under(condensed, (i, omega), contact_force, x, interrupt)?;
-        made(&mut self.dynamic, condensed)?.refine(condensed, i, (omega, self.damping), &self.load, x, interrupt)
+        made(&mut self.dynamic, condensed)?.refine(
+            condensed,
+            i,
+            DampedFrequency::new(omega, self.damping),
+            &self.load,
+            x,
+            interrupt,
+        )
     }
 
     /// Motion of all degrees of freedom as in `recover`, but without refinement: with the digits that the

@@ -3,7 +3,9 @@
 //! Where contacts are few the whole table ∂H/∂ω = −R Z_κ⁻¹ Z′ Z_κ⁻¹ B is made. Where they are many a residual takes its product with one
 //! vector of forces only, R ∂x/∂ω of the motion x under them, and the response its last row.
 
-use crate::condense::by_factors::dynamic_stiffness::{Variable, add_slope_product, fill_slope, multiply};
+use crate::condense::by_factors::dynamic_stiffness::{
+    DampedFrequency, Variable, add_slope_product, fill_slope, multiply,
+};
 use crate::condense::by_factors::flexibility::{CONTEXT, Table, Workspace, made, read};
 use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, try_vec};
@@ -43,7 +45,11 @@ impl Workspace {
         if self.slope.len() < entries {
             self.slope = try_vec(entries, Complex64::ZERO, CONTEXT)?;
         }
-        fill_slope(block, (omega, self.damping), &mut self.slope[..entries]);
+        fill_slope(
+            block,
+            DampedFrequency::new(omega, self.damping),
+            &mut self.slope[..entries],
+        );
         // −Rᵀ as the adjoint of −conj R.
         for z in &mut self.rows {
             *z = -z.conj();
@@ -178,7 +184,14 @@ impl Workspace {
         x.copy_from_slice(&self.load);
         dynamic.solve(condensed, i, omega, x, false, interrupt)?;
         if dynamic.should_refine(condensed, i, x) {
-            dynamic.refine(condensed, i, (omega, self.damping), &self.load, x, interrupt)?;
+            dynamic.refine(
+                condensed,
+                i,
+                DampedFrequency::new(omega, self.damping),
+                &self.load,
+                x,
+                interrupt,
+            )?;
         }
         let found = self.recover_along(condensed, (i, omega), (&[], 1.0), x, dx, interrupt);
         let first = table.value.len() - (condensed.coordinates() + 1);

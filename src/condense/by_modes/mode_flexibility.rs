@@ -4,7 +4,7 @@
 //! x = −Z⁻¹ Wᴴ w, ∂x/∂w = −Z⁻¹ Wᴴ, ∂x/∂ω = −Z⁻¹ Z_ω x, ∂x/∂D = −Z⁻¹ Z_D x: sums over the modes of the wave where it has such, else by
 //! factorisation.
 
-use crate::condense::by_factors::dynamic_stiffness::{DynamicStiffness, Variable, add_slope_product};
+use crate::condense::by_factors::dynamic_stiffness::{DampedFrequency, DynamicStiffness, Variable, add_slope_product};
 use crate::condense::by_modes::modal_rows::ModalRows;
 use crate::condense::by_modes::mode_sums::{GaugeProducts, ModeSums, SumWork};
 use crate::condense::by_modes::sum_terms::Source;
@@ -118,7 +118,7 @@ impl ModeFlexibility {
         &mut self,
         condensed: &Condensed,
         i: usize,
-        at: (f64, f64),
+        at: DampedFrequency,
         w: &[Complex64],
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
@@ -159,7 +159,7 @@ impl ModeFlexibility {
     fn agrees(
         &mut self,
         (condensed, i): (&Condensed, usize),
-        at: (f64, f64),
+        at: DampedFrequency,
         w: &[Complex64],
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
@@ -281,7 +281,7 @@ impl Direct {
     fn solve(
         &mut self,
         (condensed, i): (&Condensed, usize),
-        (omega, damping): (f64, f64),
+        DampedFrequency { omega, damping }: DampedFrequency,
         w: &[Complex64],
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
@@ -316,8 +316,14 @@ impl Direct {
                 self.load[p] -= a.conj() * w;
             }
         }
-        self.dynamic
-            .refine(condensed, i, (omega, damping), &self.load, &mut self.x, interrupt)?;
+        self.dynamic.refine(
+            condensed,
+            i,
+            DampedFrequency { omega, damping },
+            &self.load,
+            &mut self.x,
+            interrupt,
+        )?;
         for (rate, by) in self.rates.iter_mut().zip([Variable::Omega, Variable::Damping]) {
             rate.fill(Complex64::ZERO);
             add_slope_product(condensed, i, (omega.into(), damping), by, false, &self.x, rate);
@@ -334,7 +340,7 @@ impl Direct {
     fn refine(
         &mut self,
         (condensed, i): (&Condensed, usize),
-        at: (f64, f64),
+        at: DampedFrequency,
         which: usize,
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
@@ -343,7 +349,15 @@ impl Direct {
         };
         let by = [Variable::Omega, Variable::Damping][which - 1];
         self.load.fill(Complex64::ZERO);
-        add_slope_product(condensed, i, (at.0.into(), at.1), by, false, &self.x, &mut self.load);
+        add_slope_product(
+            condensed,
+            i,
+            (at.omega.into(), at.damping),
+            by,
+            false,
+            &self.x,
+            &mut self.load,
+        );
         for z in &mut self.load {
             *z = -*z;
         }
@@ -354,7 +368,7 @@ impl Direct {
     fn refine_column(
         &mut self,
         (condensed, i): (&Condensed, usize),
-        at: (f64, f64),
+        at: DampedFrequency,
         coordinate: usize,
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {

@@ -32,7 +32,8 @@ fn compare(model: &Model, form: DampingForm, (harmonics, allowed): (usize, f64),
     for i in 0..direct.blocks().len() {
         for &at in points {
             let case = format!("{case}, {form:?}, harmonic {i} at {at:?}");
-            let solve = |of: &mut ModeFlexibility, c| of.solve(c, i, at, &w, &Interrupt::none()).unwrap();
+            let damped = DampedFrequency::new(at.0, at.1);
+            let solve = |of: &mut ModeFlexibility, c| of.solve(c, i, damped, &w, &Interrupt::none()).unwrap();
             solve(&mut by_sums, &quick);
             solve(&mut exact, &direct);
             assert!(by_sums.by_sums == Some(i) && exact.by_sums.is_none(), "{case}");

@@ -13,6 +13,7 @@
 //! > ξ = −d⁻¹ Eᴴ (w + e X w),  Z ∂x = −∂Z x:  z = (1 − G′ e)⁻¹ E d⁻¹ r,  ∂ξ = d⁻¹ (r + Eᴴ e z),  r = Eᴴ ∂e E ξ − ∂d ξ,
 //! > vᴴ Φᴴ Z⁻¹ Wᴴ = p + p e X,  p = (v*/d) Eᴴ.
 
+use crate::condense::by_factors::dynamic_stiffness::DampedFrequency;
 use crate::condense::by_factors::flexibility::Table;
 use crate::condense::by_modes::low_rank::{Coefficients, LowRank, Plain};
 use crate::condense::by_modes::modal_rows::ModalRows;
@@ -178,7 +179,7 @@ impl ModeSums {
     pub fn solve(
         &self,
         work: &mut SumWork,
-        (omega, damping): (f64, f64),
+        DampedFrequency { omega, damping }: DampedFrequency,
         w: &[Complex64],
         (x, relative): (&mut [Complex64], &mut [Complex64]),
         interrupt: &Interrupt<'_>,
