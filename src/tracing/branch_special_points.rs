@@ -44,6 +44,9 @@ impl BranchTracer<'_> {
         } else {
             None
         };
+        if let Some((fold, resolution)) = &fold {
+            self.folds.note((fold, *resolution), a, b)?;
+        }
         let turn = fold.as_ref().map(|(fold, resolution)| (fold, *resolution));
         self.find_bifurcations(analysis, a, b, turn)?;
         self.find_branch_point(analysis, a, b)?;
