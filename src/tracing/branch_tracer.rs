@@ -40,6 +40,13 @@ enum Outside {
     Gone,
 }
 
+/// Outcome of the question whether a curve closes.
+enum Following {
+    /// The next point, with the status that ends the curve there, if any.
+    GoesOn(Point, Option<Status>),
+    Ended(Status),
+}
+
 /// Outcome of such an excursion for the recorded curve.
 enum Return {
     /// The branch came back, and this point was recorded.
@@ -141,9 +148,10 @@ impl BranchTracer<'_> {
             }
             backtracks = 0;
 
-            // End where a curve that was entered inside its range closes, or comes back to its parent.
-            let Some((point, end)) = self.inner_end(analysis, recent.last(), (point, end))? else {
-                return Ok(Status::Ok);
+            // End where the curve closes, or comes back to its parent.
+            let (point, end) = match self.closing(analysis, recent.last(), (point, end))? {
+                Following::GoesOn(point, end) => (point, end),
+                Following::Ended(status) => return Ok(status),
             };
 
             // Record the point, and the special points before it.
@@ -208,27 +216,40 @@ impl BranchTracer<'_> {
     }
 
     /// The next point, of the current resolution, with the status that ends the curve at this point, if any. Where a
-    /// curve that was entered inside its range closes, the point is its first one; `None` where the curve passed the
-    /// branch that it branches off from.
-    fn inner_end(
+    /// curve that was entered inside its range closes, the point is its first one. The curve ends before the point where it
+    /// passed the branch that it branches off from, and where it goes round a closed curve that a step has entered.
+    fn closing(
         &mut self,
         analysis: &mut dyn Traceable,
         last: PointAt<'_>,
         (point, end): (Point, Option<Status>),
-    ) -> Result<Option<(Point, Option<Status>)>> {
+    ) -> Result<Following> {
+        let by = (&self.course.settings, self.interrupt);
         let Some(ends) = &self.course.ends else {
-            return Ok(Some((point, end)));
+            let (goes_round, evaluated) = if analysis.levels().is_automatic() {
+                self.folds.repeat(analysis, last, &point, by)?
+            } else {
+                (false, false)
+            };
+            if goes_round {
+                return Ok(Following::Ended(Status::StoppedClosed));
+            }
+            // The problem is to be evaluated at the point that is recorded.
+            let again = if evaluated {
+                analysis.resolve(&point, end.is_some(), self.interrupt)?
+            } else {
+                None
+            };
+            return Ok(Following::GoesOn(again.unwrap_or(point), end));
         };
-        Ok(
-            match ends.between(analysis, last, &point, (&self.course.settings, self.interrupt))? {
-                None => Some((point, end)),
-                Some(InnerEnd::Closed(first)) => Some((first, Some(Status::StoppedClosed))),
-                Some(InnerEnd::Merged(at)) => {
-                    self.merged_at = at;
-                    None
-                }
-            },
-        )
+        Ok(match ends.between(analysis, last, &point, by)? {
+            None => Following::GoesOn(point, end),
+            Some(InnerEnd::Closed(first)) => Following::GoesOn(first, Some(Status::StoppedClosed)),
+            Some(InnerEnd::Merged(at)) => {
+                self.merged_at = at;
+                Following::Ended(Status::Ok)
+            }
+        })
     }
 
     /// Whether a point found with other harmonics lies before the point recorded last, or outside the range.

@@ -8,6 +8,7 @@ use crate::hooks::{Hooks, Progress};
 use crate::interrupt::Interrupt;
 use crate::options::Range;
 use crate::tracing::inner_ends::InnerEnds;
+use crate::tracing::passed_folds::PassedFolds;
 use crate::tracing::resonance_bands::ResonanceBands;
 use crate::tracing::resonance_grid::LinearGrid;
 
@@ -47,6 +48,8 @@ pub(crate) struct BranchTracer<'a> {
     pub(super) before_arc: Vec<(Point, usize)>,
     /// Parameter value at which the curve came back to the branch that it branches off from; NaN where it did not.
     pub(super) merged_at: f64,
+    /// Folds that the curve passed, by which it is seen to go round.
+    pub(super) folds: PassedFolds,
 }
 
 impl<'a> BranchTracer<'a> {
@@ -60,6 +63,7 @@ impl<'a> BranchTracer<'a> {
             grid_requested: false,
             before_arc: Vec::new(),
             merged_at: f64::NAN,
+            folds: PassedFolds::default(),
         }
     }
 

@@ -7,8 +7,8 @@
 //! values of [`resonance_grid`]. Where a branch is followed for its special points alone, [`resonance_bands`] bounds the steps. No
 //! step of a sweep passes one of the [`linear_resonances`] that the branch feels. A
 //! first point that leads to none within the tolerance is sought again by [`cold_start`]. A branch that comes back along its own
-//! points is found and turned round by [`retracing`]; a curve that is entered inside its range ends by [`inner_ends`].
-//! [`branch_recorder`] stores points.
+//! points is found and turned round by [`retracing`]; a curve that is entered inside its range ends by [`inner_ends`], and
+//! one that goes round a closed curve by [`passed_folds`]. [`branch_recorder`] stores points.
 
 mod bifurcations;
 mod branch_points;
@@ -20,6 +20,7 @@ mod course;
 pub(crate) mod inner_ends;
 pub(crate) mod linear_resonances;
 mod linear_stretch;
+mod passed_folds;
 mod points_between;
 mod requested_points;
 pub(crate) mod resonance_bands;

@@ -43,6 +43,9 @@ pub(super) fn locate_special(
     } else {
         None
     };
+    if let Some((fold, resolution)) = &fold {
+        tracer.folds.note((fold, *resolution), a, b)?;
+    }
     let turn = fold.as_ref().map(|(fold, resolution)| (fold, *resolution));
     bifurcations::find_bifurcations(tracer, analysis, a, b, turn)?;
     branch_points::find_branch_point(tracer, analysis, a, b)?;

@@ -4,6 +4,7 @@
 mod common;
 
 mod changing_harmonics;
+mod closed_curves;
 mod finite_fields;
 mod hard_cases;
 mod hard_modes;

@@ -150,7 +150,7 @@ impl Status {
                 "the followed maximum met a minimum and vanished; the points found so far are kept; follow another peak from there"
             }
             Self::StoppedClosed => {
-                "the curve is closed: it came back to its first point, and all of it within the range is kept"
+                "the curve is closed: it came back to its first point, or to a fold that it had passed often; all of it within the range is kept"
             }
             _ => "",
         }
