@@ -8,7 +8,7 @@ use crate::aft::piecewise_exact::Exact;
 use crate::aft::piecewise_sampled::Sampled;
 use crate::aft::plane_friction::PlaneFrictionEvaluator;
 use crate::aft::varying_normal_load::VaryingNormalLoadEvaluator;
-use crate::contact::forms::law::{Form, Law};
+use crate::contact::forms::law::{Form, Law, PackedMotion};
 use crate::error::{Result, boxed, fail, try_push};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
@@ -245,7 +245,7 @@ impl Evaluator {
                 self.smooth.spectral(law, set, motion, out, interrupt)?;
             }
             (Form::PiecewiseLinear(law), Scalar::Exact(evaluator)) => {
-                evaluator.evaluate(law, (set, motion, omega), out, interrupt)?;
+                evaluator.evaluate(law, PackedMotion { set, motion, omega }, out, interrupt)?;
             }
             (Form::PiecewiseLinear(law), Scalar::Sampled(evaluator)) => {
                 evaluator.evaluate(law, set, motion, out, interrupt)?;

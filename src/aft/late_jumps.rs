@@ -5,9 +5,9 @@
 //! with the force f₊ after the jump: α x(c) of a stick, ∓fc of a slip backwards.
 
 use crate::aft::moved_ends::impulse;
-use crate::contact::forms::law::{Form, Law};
+use crate::contact::forms::law::{Form, Law, PackedMotion};
 use crate::error::{Error, Result, try_vec};
-use crate::fourier::{HarmonicSet, TurningPoints, jet};
+use crate::fourier::{TurningPoints, jet};
 use crate::interrupt::Interrupt;
 
 const CONTEXT: &str = "the jumps of a contact force";
@@ -25,7 +25,7 @@ pub struct LateJumps {
 /// # Errors
 /// `OutOfMemory`, `StoppedByCaller`.
 pub fn late_jumps(
-    (set, motion, omega): (&HarmonicSet, &[f64], f64),
+    PackedMotion { set, motion, omega }: PackedMotion<'_>,
     law: &dyn Law,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<LateJumps>> {
@@ -42,7 +42,7 @@ pub fn late_jumps(
         .and_then(|()| pieces.try_reserve_exact(law.most_pieces(highest)))
         .map_err(|_| Error::out_of_memory(CONTEXT))?;
     TurningPoints::new(set)?.find(set, motion, &mut extrema, interrupt)?;
-    let apart = ends.follow((set, motion, omega), &extrema, &mut pieces, interrupt)?;
+    let apart = ends.follow(PackedMotion { set, motion, omega }, &extrema, &mut pieces, interrupt)?;
     let (mut sum, mut one) = (
         try_vec(set.packed_len(), 0.0, CONTEXT)?,
         try_vec(set.packed_len(), 0.0, CONTEXT)?,

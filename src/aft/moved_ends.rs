@@ -17,7 +17,7 @@
 
 use crate::aft::evaluation::Evaluation;
 use crate::aft::jacobian_assembly::Assembly;
-use crate::contact::forms::law::SlidingEnds;
+use crate::contact::forms::law::{PackedMotion, SlidingEnds};
 use crate::contact::forms::piece::Piece;
 use crate::error::{Result, try_vec};
 use crate::fourier::{HarmonicSet, jet};
@@ -53,13 +53,13 @@ impl MovedEnds {
     /// Adds the impulses at the ends of all slips among the pieces of half a turn.
     pub(super) fn add(
         &mut self,
-        at: (&HarmonicSet, &[f64], f64),
+        at: PackedMotion<'_>,
         (pieces, law): (&[Piece], &dyn SlidingEnds),
         assembly: &mut Assembly,
         out: &mut Evaluation,
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        let (set, motion, _) = at;
+        let PackedMotion { set, motion, .. } = at;
         if !pieces.iter().any(is_slip) {
             return Ok(());
         }
@@ -110,7 +110,7 @@ impl MovedEnds {
     /// and the impulse over α. Returns the factor of the momentum at its begin.
     fn follow(
         &mut self,
-        (set, motion, omega): (&HarmonicSet, &[f64], f64),
+        PackedMotion { set, motion, omega }: PackedMotion<'_>,
         (rest, piece): (Option<f64>, &Piece),
         law: &dyn SlidingEnds,
     ) -> f64 {

@@ -7,7 +7,7 @@
 use crate::aft::evaluation::Evaluation;
 use crate::aft::jacobian_assembly::Assembly;
 use crate::aft::moved_ends::MovedEnds;
-use crate::contact::forms::law::PiecewiseLinear;
+use crate::contact::forms::law::{PackedMotion, PiecewiseLinear};
 use crate::contact::forms::piece::Piece;
 use crate::error::{Error, Result, try_vec};
 use crate::fourier::HarmonicSet;
@@ -89,12 +89,17 @@ impl Exact {
     pub fn evaluate(
         &mut self,
         law: &dyn PiecewiseLinear,
-        (set, motion, omega): (&HarmonicSet, &[f64], f64),
+        PackedMotion { set, motion, omega }: PackedMotion<'_>,
         out: &mut Evaluation,
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         self.pieces.clear();
-        law.pieces_at((set, motion, omega), &self.extrema, &mut self.pieces, interrupt)?;
+        law.pieces_at(
+            PackedMotion { set, motion, omega },
+            &self.extrema,
+            &mut self.pieces,
+            interrupt,
+        )?;
         self.assembly.start(out);
         let turn = TAU / set.stride() as f64;
         let ends = law.sliding_ends();
@@ -120,8 +125,13 @@ impl Exact {
         }
         if let Some(ends) = ends {
             let pieces = (&self.pieces[..], ends);
-            self.ends
-                .add((set, motion, omega), pieces, &mut self.assembly, out, interrupt)?;
+            self.ends.add(
+                PackedMotion { set, motion, omega },
+                pieces,
+                &mut self.assembly,
+                out,
+                interrupt,
+            )?;
         }
         interrupt.check()?;
         self.assembly.finish(set, motion, out, interrupt)

@@ -19,6 +19,7 @@
 
 use crate::aft::late_jumps;
 use crate::condense::Condensed;
+use crate::contact::forms::law::PackedMotion;
 use crate::error::{Result, try_vec};
 use crate::harmonics::estimate::CONTEXT;
 use crate::harmonics::extended_system::ExtendedSystem;
@@ -88,7 +89,7 @@ fn lateness(
         }
         let (late, jumps) = if exchange.mass_at.is_some() {
             let motion = &at[c * m..(c + 1) * m];
-            let Some(jumps) = late_jumps((set, motion, omega), &*law.law, interrupt)? else {
+            let Some(jumps) = late_jumps(PackedMotion { set, motion, omega }, &*law.law, interrupt)? else {
                 continue;
             };
             let late = OF_RING_OF_MASS * set.base() as f64 / of_ring + jumps.apart;

@@ -24,6 +24,17 @@ use core::fmt::Debug;
 use num_complex::Complex64;
 use std::sync::Arc;
 
+/// A relative motion over harmonics, at an angular frequency.
+#[derive(Clone, Copy)]
+pub struct PackedMotion<'a> {
+    /// Carried harmonics.
+    pub set: &'a HarmonicSet,
+    /// Packed coefficients of the motion.
+    pub motion: &'a [f64],
+    /// Angular frequency ω of the response.
+    pub omega: f64,
+}
+
 /// A law as the caller describes it, its constants in the caller's units.
 pub trait ContactLaw {
     /// Name of a contact of this law in messages, "cubic spring".
@@ -217,7 +228,7 @@ pub trait PiecewiseLinear {
     /// Those of [`Self::pieces`].
     fn pieces_at(
         &self,
-        (set, motion, _omega): (&HarmonicSet, &[f64], f64),
+        PackedMotion { set, motion, .. }: PackedMotion<'_>,
         turning_points: &[Extremum],
         pieces: &mut Vec<Piece>,
         interrupt: &Interrupt<'_>,
@@ -250,7 +261,7 @@ pub trait SlidingEnds {
     /// Those of [`PiecewiseLinear::pieces`].
     fn follow(
         &self,
-        at: (&HarmonicSet, &[f64], f64),
+        at: PackedMotion<'_>,
         turning_points: &[Extremum],
         pieces: &mut Vec<Piece>,
         interrupt: &Interrupt<'_>,

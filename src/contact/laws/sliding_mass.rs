@@ -24,7 +24,7 @@
 //! r, which makes the force continuous.
 
 use crate::contact::forms::contact_state::State;
-use crate::contact::forms::law::{Form, Law, PiecewiseLinear, SlidingEnds};
+use crate::contact::forms::law::{Form, Law, PackedMotion, PiecewiseLinear, SlidingEnds};
 use crate::contact::forms::linearisation::Range;
 use crate::contact::forms::piece::Piece;
 use crate::error::{Result, fail};
@@ -116,7 +116,7 @@ impl SlidingMass {
     /// Follows half turns until one repeats itself, and leaves its pieces: returns the time by which the last one did not.
     fn follow_half_turns(
         &self,
-        (set, motion, omega): (&HarmonicSet, &[f64], f64),
+        PackedMotion { set, motion, omega }: PackedMotion<'_>,
         turning_points: &[Extremum],
         pieces: &mut Vec<Piece>,
         interrupt: &Interrupt<'_>,
@@ -199,12 +199,21 @@ impl PiecewiseLinear for SlidingMass {
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         // Ever slower: no force is late.
-        self.pieces_at((set, motion, 0.0), turning_points, pieces, interrupt)
+        self.pieces_at(
+            PackedMotion {
+                set,
+                motion,
+                omega: 0.0,
+            },
+            turning_points,
+            pieces,
+            interrupt,
+        )
     }
 
     fn pieces_at(
         &self,
-        at: (&HarmonicSet, &[f64], f64),
+        at: PackedMotion<'_>,
         turning_points: &[Extremum],
         pieces: &mut Vec<Piece>,
         interrupt: &Interrupt<'_>,
@@ -242,7 +251,7 @@ impl SlidingEnds for SlidingMass {
 
     fn follow(
         &self,
-        at: (&HarmonicSet, &[f64], f64),
+        at: PackedMotion<'_>,
         turning_points: &[Extremum],
         pieces: &mut Vec<Piece>,
         interrupt: &Interrupt<'_>,

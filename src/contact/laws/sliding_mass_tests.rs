@@ -57,7 +57,18 @@ fn forces_are_those_of_steps_in_time() {
             .unwrap()
             .find(&set, &x, &mut extrema, &none)
             .unwrap();
-        let apart = law.follow((&set, &x, 1.0), &extrema, &mut pieces, &none).unwrap();
+        let apart = law
+            .follow(
+                PackedMotion {
+                    set: &set,
+                    motion: &x,
+                    omega: 1.0,
+                },
+                &extrema,
+                &mut pieces,
+                &none,
+            )
+            .unwrap();
         assert!(apart == 0.0, "{seed}: {apart:e}");
         // An odd number of half turns, whose last one has the sign of the motion.
         let force = stepped(&set, &x, 81);
@@ -104,7 +115,17 @@ fn half_turns_that_do_not_repeat_themselves_are_told() {
             .unwrap()
             .find(&set, &x, &mut extrema, &none)
             .unwrap();
-        law.follow((&set, &x, 1.0), &extrema, &mut pieces, &none).unwrap()
+        law.follow(
+            PackedMotion {
+                set: &set,
+                motion: &x,
+                omega: 1.0,
+            },
+            &extrema,
+            &mut pieces,
+            &none,
+        )
+        .unwrap()
     };
     let found = apart(1.5015);
     assert!(found > 1e-8 && found < 1e-4, "{found:e}");

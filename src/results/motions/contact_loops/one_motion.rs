@@ -4,7 +4,7 @@
 //! work per cycle is that of the slips: Σ f·Δx, a sum of positive terms.
 
 use crate::contact::forms::contact_state::State;
-use crate::contact::forms::law::{Form, Law};
+use crate::contact::forms::law::{Form, Law, PackedMotion};
 use crate::contact::forms::piece::Piece;
 use crate::error::{Error, Result, try_push};
 use crate::fourier::HarmonicSet;
@@ -42,7 +42,12 @@ impl<'a> ScalarOrbit<'a> {
             pieces
                 .try_reserve(law.most_pieces(set.highest_reduced()))
                 .map_err(|_| Error::out_of_memory(CONTEXT))?;
-            law.pieces_at((set, motion, omega), &turning_points, &mut pieces, interrupt)?;
+            law.pieces_at(
+                PackedMotion { set, motion, omega },
+                &turning_points,
+                &mut pieces,
+                interrupt,
+            )?;
         }
         for piece in &pieces {
             interrupt.check_before(motion.len() as u64)?;
