@@ -1,11 +1,12 @@
 //! Storage of the points of a run: points of the curve at once, special points when the curve is complete.
 
 use crate::condense::{Reduction, Resolution};
-use crate::error::{Error, Result, Status, try_copy, try_push};
+use crate::error::{Error, Result, Status, try_copy, try_push, try_vec};
 use crate::options::MAX_REFINEMENT;
 use crate::results::stored::mode_branch::ModePoint;
 use crate::results::watched::responses;
 use crate::results::{Branch, Record, SeenWithError, SpecialKind, Verdict};
+use crate::tracing::sampled_ripples::{Maximum, are_ripples};
 use core::cmp::Ordering;
 use num_complex::Complex64;
 
@@ -190,9 +191,43 @@ impl<'a> BranchRecorder<'a> {
         try_push(&mut self.specials, special, CONTEXT)
     }
 
+    /// For each special point, whether it is a maximum of the observed amplitude that sampling may have made.
+    fn ripples(&self) -> Result<Vec<bool>> {
+        let mut ripples = try_vec(self.specials.len(), false, CONTEXT)?;
+        let leads = self.branch.responses().first().is_none_or(|first| first.is_observed());
+        if !leads {
+            return Ok(ripples);
+        }
+        let (mut maxima, mut numbers) = (Vec::new(), Vec::new());
+        for (number, special) in self.specials.iter().enumerate() {
+            if matches!(special.kind, SpecialKind::Peak) && special.numbers.sampling_error > 0.0 {
+                let amplitude = special.amplitude.norm() * special.resolution.condensed.length();
+                let (after, error) = (special.after, special.numbers.sampling_error);
+                try_push(
+                    &mut maxima,
+                    Maximum {
+                        after,
+                        amplitude,
+                        error,
+                    },
+                    CONTEXT,
+                )?;
+                try_push(&mut numbers, number, CONTEXT)?;
+            }
+        }
+        for (number, is_ripple) in numbers.iter().zip(are_ripples(self.branch.amplitude(), &maxima)?) {
+            ripples[*number] = is_ripple;
+        }
+        Ok(ripples)
+    }
+
     /// Completes the branch: the special points are numbered after the curve.
     pub fn finish(mut self, ending: &Ending, reduction: Reduction, estimates: usize) -> Result<Box<Branch>> {
-        for special in &self.specials {
+        let ripples = self.ripples()?;
+        for (special, is_ripple) in self.specials.iter().zip(ripples) {
+            if is_ripple {
+                continue;
+            }
             let seen = special.kind.response().and_then(|r| Some((r, special.seen.get(r)?)));
             if let Some((response, seen)) = seen
                 && responses::is_rounding(&self.branch, response, seen.seen.reading.value, special.resolution)

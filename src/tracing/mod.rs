@@ -8,7 +8,8 @@
 //! step of a sweep passes one of the [`linear_resonances`] that the branch feels. A
 //! first point that leads to none within the tolerance is sought again by [`cold_start`]. A branch that comes back along its own
 //! points is found and turned round by [`retracing`]; a curve that is entered inside its range ends by [`inner_ends`], and
-//! one that goes round a closed curve by [`passed_folds`]. [`branch_recorder`] stores points.
+//! one that goes round a closed curve by [`passed_folds`]. [`branch_recorder`] stores points, but for maxima
+//! that samples of a law may have made ([`sampled_ripples`]).
 
 mod bifurcations;
 mod branch_points;
@@ -28,3 +29,4 @@ pub(crate) mod resonance_grid;
 mod response_kinks;
 mod response_peaks;
 mod retracing;
+mod sampled_ripples;

@@ -32,6 +32,7 @@ mod reference_response;
 mod residual_band;
 mod ring_damper_speeds;
 mod rotation;
+mod sampled_peaks;
 mod small_systems;
 mod stiff_links;
 mod structural_closed_forms;

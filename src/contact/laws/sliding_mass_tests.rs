@@ -1,6 +1,7 @@
 //! Tests of sliders that are masses, against steps in time.
 
 use super::SlidingMass;
+use crate::contact::forms::law::PackedMotion;
 use crate::contact::forms::law::{PiecewiseLinear, SlidingEnds};
 use crate::fourier::{HarmonicSet, TurningPoints, jet};
 use crate::interrupt::Interrupt;

@@ -1,0 +1,96 @@
+//! Maxima that samples may have made. The forces of a smooth law that is evaluated at samples err with the motion, so that a slope has
+//! ripples of the size of that error, each with a maximum. One that rises above the curve on either side by less than the error is no
+//! peak that the response is known to have.
+
+use crate::error::{Result, try_push};
+
+const CONTEXT: &str = "the peaks of the branch";
+
+/// A maximum beside the curve, or a point of it.
+#[derive(Clone, Copy)]
+struct Height {
+    amplitude: f64,
+    /// Number of the maximum among those given.
+    maximum: Option<usize>,
+}
+
+/// A maximum after the given point of the curve, with the relative error of its forces by sampling.
+pub(crate) struct Maximum {
+    pub after: usize,
+    pub amplitude: f64,
+    pub error: f64,
+}
+
+/// For each maximum, in the order along the curve, whether it is a ripple: on one side the curve rises above it again before it has
+/// fallen by the error.
+///
+/// # Errors
+/// `OutOfMemory`.
+pub(crate) fn are_ripples(curve: &[f64], maxima: &[Maximum]) -> Result<Vec<bool>> {
+    let mut found = Vec::new();
+    if maxima.is_empty() {
+        return Ok(found);
+    }
+    let mut line = Vec::new();
+    let mut next = 0;
+    for (point, &amplitude) in curve.iter().enumerate() {
+        let height = Height {
+            amplitude,
+            maximum: None,
+        };
+        try_push(&mut line, height, CONTEXT)?;
+        while let Some(found) = maxima.get(next).filter(|found| found.after <= point) {
+            let height = Height {
+                amplitude: found.amplitude,
+                maximum: Some(next),
+            };
+            try_push(&mut line, height, CONTEXT)?;
+            next += 1;
+        }
+    }
+    for (at, height) in line.iter().enumerate() {
+        let Some(number) = height.maximum else { continue };
+        let floor = height.amplitude * (1.0 - maxima[number].error);
+        let is_ripple = maxima[number].error > 0.0
+            && (rises(line[..at].iter().rev(), *height, floor) || rises(line[at + 1..].iter(), *height, floor));
+        try_push(&mut found, is_ripple, CONTEXT)?;
+    }
+    Ok(found)
+}
+
+/// Whether a line rises above a maximum again before it has fallen to `floor`.
+fn rises<'a>(mut line: impl Iterator<Item = &'a Height>, maximum: Height, floor: f64) -> bool {
+    let first = line.find(|other| other.amplitude > maximum.amplitude || other.amplitude < floor);
+    first.is_some_and(|other| other.amplitude > maximum.amplitude)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ripples_on_a_slope_are_none_and_peaks_of_any_height_are_kept_where_nothing_is_sampled() {
+        let slope: Vec<f64> = (0..20).map(|i| 1.0 + 0.01 * f64::from(i)).collect();
+        // A ripple of 1e-4 on the slope; the top, of 0.5.
+        let maxima = |error: f64| {
+            [(4, 1.0501), (12, 1.1201), (19, 1.5)].map(|(after, amplitude)| Maximum {
+                after,
+                amplitude,
+                error,
+            })
+        };
+        assert_eq!(are_ripples(&slope, &maxima(1e-3)).unwrap(), [true, true, false]);
+        assert_eq!(are_ripples(&slope, &maxima(0.0)).unwrap(), [false; 3]);
+        // Two summits with a saddle that is lower by 2e-3.
+        let saddle = [1.0, 1.1, 1.198, 1.1, 1.0];
+        let two = |error: f64| {
+            [(1, 1.2), (2, 1.2001)].map(|(after, amplitude)| Maximum {
+                after,
+                amplitude,
+                error,
+            })
+        };
+        assert_eq!(are_ripples(&saddle, &two(1e-3)).unwrap(), [false, false]);
+        assert_eq!(are_ripples(&saddle, &two(1e-2)).unwrap(), [true, false]);
+    }
+}
