@@ -194,7 +194,10 @@ impl<'a> BranchRecorder<'a> {
     /// For each special point, whether it is a maximum of the observed amplitude that sampling may have made.
     fn ripples(&self) -> Result<Vec<bool>> {
         let mut ripples = try_vec(self.specials.len(), false, CONTEXT)?;
-        let leads = self.branch.responses().first().is_none_or(|first| first.is_observed());
+        let leads = match self.branch.responses().first() {
+            Some(first) => first.is_observed(),
+            None => true,
+        };
         if !leads {
             return Ok(ripples);
         }
