@@ -12,7 +12,7 @@ pub use crate::analysis::linear::linear_contacts::linear_modes;
 pub use crate::condense::by_factors::flexibility::Workspace;
 pub use crate::condense::{Condensed, FlexibilityWay, Reference};
 pub use crate::contact::Role;
-pub use crate::contact::forms::law::{Form, Hysteretic, Law, Memoryless, PiecewiseLinear};
+pub use crate::contact::forms::law::{Form, Hysteretic, Law, Memoryless, PackedMotion, PiecewiseLinear};
 pub use crate::contact::forms::linearisation::Range;
 pub use crate::contact::forms::march::March;
 pub use crate::contact::forms::piece::{CoupledPiece, Piece};

@@ -198,7 +198,8 @@ impl<'a> BranchRecorder<'a> {
             Some(first) => first.is_observed(),
             None => true,
         };
-        if !leads {
+        // The peaks of a nonlinear mode are those of its damping.
+        if !leads || self.branch.mode_data().is_some() {
             return Ok(ripples);
         }
         let (mut maxima, mut numbers) = (Vec::new(), Vec::new());

@@ -8,7 +8,7 @@ use hbvib::internals::Piece;
 use hbvib::internals::Sampled;
 use hbvib::internals::TurningPoints;
 use hbvib::internals::{Evaluation, Evaluator};
-use hbvib::internals::{Law, PiecewiseLinear};
+use hbvib::internals::{Law, PackedMotion, PiecewiseLinear};
 use hbvib::{Contact, Interrupt, Status, Table};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
@@ -24,8 +24,17 @@ fn evaluate(law: &Table, set: &HarmonicSet, motion: &[f64]) -> Evaluation {
     let most = law.most_pieces(set.highest_reduced());
     let mut way = Exact::new(set, most).unwrap();
     way.prepare(set, motion, &Interrupt::none()).unwrap();
-    way.evaluate(law, (set, motion, 1.0), &mut out, &Interrupt::none())
-        .unwrap();
+    way.evaluate(
+        law,
+        PackedMotion {
+            set,
+            motion,
+            omega: 1.0,
+        },
+        &mut out,
+        &Interrupt::none(),
+    )
+    .unwrap();
     assert!(
         way.pieces().len() <= most,
         "{} pieces, bound {most}",

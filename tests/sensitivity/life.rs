@@ -431,7 +431,7 @@ fn the_best_load_for_a_life_is_that_of_a_scan() {
     let wear = wear(&[0.02]);
     let (best, largest) = best_of(&wear);
     let scanned = (0..25).map(|i| best.factor * (0.9 + 0.2 * f64::from(i) / 24.0));
-    let least = scanned.map(largest).fold(f64::INFINITY, f64::min);
+    let least = scanned.map(&largest).fold(f64::INFINITY, f64::min);
     assert!(best.amplitude <= least * (1.0 + 1e-6), "{best:?} against {least}");
     close("its amplitude", largest(best.factor), best.amplitude, 1e-9);
     // The new and the worn machine vibrate alike.
