@@ -202,27 +202,32 @@ impl<'a> BranchRecorder<'a> {
         if !leads || self.branch.mode_data().is_some() {
             return Ok(ripples);
         }
-        let (mut maxima, mut numbers) = (Vec::new(), Vec::new());
+        let mut found = Vec::new();
         for (number, special) in self.specials.iter().enumerate() {
             if matches!(special.kind, SpecialKind::Peak) && special.numbers.sampling_error > 0.0 {
-                let amplitude = special.amplitude.norm() * special.resolution.condensed.length();
-                let (after, error) = (special.after, special.numbers.sampling_error);
-                try_push(
-                    &mut maxima,
-                    Maximum {
-                        after,
-                        amplitude,
-                        error,
-                    },
-                    CONTEXT,
-                )?;
-                try_push(&mut numbers, number, CONTEXT)?;
+                let maximum = Maximum {
+                    after: self.points_before(special),
+                    amplitude: special.amplitude.norm() * special.resolution.condensed.length(),
+                    error: special.numbers.sampling_error,
+                };
+                try_push(&mut found, (number, maximum), CONTEXT)?;
             }
         }
-        for (number, is_ripple) in numbers.iter().zip(are_ripples(self.branch.amplitude(), &maxima)?) {
-            ripples[*number] = is_ripple;
+        found.sort_by_key(|(_, maximum)| maximum.after);
+        for (number, is_ripple) in are_ripples(self.branch.amplitude(), &found)? {
+            ripples[number] = is_ripple;
         }
         Ok(ripples)
+    }
+
+    /// Number of points of the curve before a special point: those between whose frequencies it lies, as it may have been located a point
+    /// later.
+    fn points_before(&self, special: &SpecialRecord<'_>) -> usize {
+        let omega = self.branch.omega();
+        let is_between =
+            |k: usize| k > 0 && k < omega.len() && (omega[k - 1] - special.omega) * (omega[k] - special.omega) <= 0.0;
+        let near = [special.after, special.after.saturating_sub(1), special.after + 1];
+        near.into_iter().find(|k| is_between(*k)).unwrap_or(special.after)
     }
 
     /// Completes the branch: the special points are numbered after the curve.

@@ -18,19 +18,19 @@ struct Height {
     maximum: Option<usize>,
 }
 
-/// A maximum after the given point of the curve, with the relative error of its forces by sampling.
+/// A maximum behind the first `after` points of the curve, with the relative error of its forces by sampling.
 pub(crate) struct Maximum {
     pub after: usize,
     pub amplitude: f64,
     pub error: f64,
 }
 
-/// For each maximum, in the order along the curve, whether it is a ripple: on one side there is a higher maximum, or the curve rises above
+/// For each maximum, with its number, in the order along the curve, whether it is a ripple: on one side there is a higher maximum, or the curve rises above
 /// it by the error, before it has fallen by the error. Points of the curve have ripples as well, so that one may lie above its maximum.
 ///
 /// # Errors
 /// `OutOfMemory`.
-pub(crate) fn are_ripples(curve: &[f64], maxima: &[Maximum]) -> Result<Vec<bool>> {
+pub(crate) fn are_ripples(curve: &[f64], maxima: &[(usize, Maximum)]) -> Result<Vec<(usize, bool)>> {
     let mut found = Vec::new();
     if maxima.is_empty() {
         return Ok(found);
@@ -43,7 +43,7 @@ pub(crate) fn are_ripples(curve: &[f64], maxima: &[Maximum]) -> Result<Vec<bool>
             maximum: None,
         };
         try_push(&mut line, height, CONTEXT)?;
-        while let Some(found) = maxima.get(next).filter(|found| found.after <= point) {
+        while let Some((_, found)) = maxima.get(next).filter(|(_, found)| found.after <= point + 1) {
             let height = Height {
                 amplitude: found.amplitude,
                 maximum: Some(next),
@@ -54,10 +54,11 @@ pub(crate) fn are_ripples(curve: &[f64], maxima: &[Maximum]) -> Result<Vec<bool>
     }
     for (at, height) in line.iter().enumerate() {
         let Some(number) = height.maximum else { continue };
-        let error = maxima[number].error.min(LARGEST_RIPPLE);
+        let (own, maximum) = &maxima[number];
+        let error = maximum.error.min(LARGEST_RIPPLE);
         let is_ripple = error > 0.0
             && (rises(line[..at].iter().rev(), *height, error) || rises(line[at + 1..].iter(), *height, error));
-        try_push(&mut found, is_ripple, CONTEXT)?;
+        try_push(&mut found, (*own, is_ripple), CONTEXT)?;
     }
     Ok(found)
 }
@@ -80,37 +81,41 @@ fn rises<'a>(line: impl Iterator<Item = &'a Height>, maximum: Height, error: f64
 mod tests {
     use super::*;
 
+    /// Whether the maxima (points before, amplitude) on a curve are ripples for an error.
+    fn ripples(curve: &[f64], maxima: &[(usize, f64)], error: f64) -> Vec<bool> {
+        let all: Vec<(usize, Maximum)> = maxima
+            .iter()
+            .enumerate()
+            .map(|(number, &(after, amplitude))| {
+                (
+                    number,
+                    Maximum {
+                        after,
+                        amplitude,
+                        error,
+                    },
+                )
+            })
+            .collect();
+        are_ripples(curve, &all)
+            .unwrap()
+            .into_iter()
+            .map(|(_, is_ripple)| is_ripple)
+            .collect()
+    }
+
     #[test]
     fn ripples_on_a_slope_are_none_and_peaks_of_any_height_are_kept_where_nothing_is_sampled() {
         let slope: Vec<f64> = (0..20).map(|i| 1.0 + 0.01 * f64::from(i)).collect();
         // A ripple of 1e-4 on the slope; the top, of 0.5.
-        let maxima = |error: f64| {
-            [(4, 1.0501), (12, 1.1201), (19, 1.5)].map(|(after, amplitude)| Maximum {
-                after,
-                amplitude,
-                error,
-            })
-        };
-        assert_eq!(are_ripples(&slope, &maxima(1e-3)).unwrap(), [true, true, false]);
-        assert_eq!(are_ripples(&slope, &maxima(0.0)).unwrap(), [false; 3]);
+        let maxima = [(6, 1.0501), (13, 1.1201), (20, 1.5)];
+        assert_eq!(ripples(&slope, &maxima, 1e-3), [true, true, false]);
+        assert_eq!(ripples(&slope, &maxima, 0.0), [false; 3]);
         // Two summits with a saddle that is lower by 2e-3.
-        let saddle = [1.0, 1.1, 1.198, 1.1, 1.0];
-        let two = |error: f64| {
-            [(1, 1.2), (2, 1.2001)].map(|(after, amplitude)| Maximum {
-                after,
-                amplitude,
-                error,
-            })
-        };
-        assert_eq!(are_ripples(&saddle, &two(1e-3)).unwrap(), [false, false]);
-        assert_eq!(are_ripples(&saddle, &two(1e-2)).unwrap(), [true, false]);
+        let (saddle, two) = ([1.0, 1.1, 1.198, 1.1, 1.0], [(2, 1.2), (3, 1.2001)]);
+        assert_eq!(ripples(&saddle, &two, 1e-3), [false, false]);
+        assert_eq!(ripples(&saddle, &two, 1e-2), [true, false]);
         // A point of the curve that lies above the maximum by less than the error.
-        let top = [1.0, 1.1, 1.2005, 1.1, 1.0];
-        let one = [Maximum {
-            after: 2,
-            amplitude: 1.2,
-            error: 1e-2,
-        }];
-        assert_eq!(are_ripples(&top, &one).unwrap(), [false]);
+        assert_eq!(ripples(&[1.0, 1.1, 1.2005, 1.1, 1.0], &[(3, 1.2)], 1e-2), [false]);
     }
 }
