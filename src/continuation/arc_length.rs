@@ -351,7 +351,8 @@ impl Continuation {
         self.stationary = if change <= ARC_LENGTH_ROUNDING * point.parameter().abs() && point.step > TINY {
             self.stationary + 1
         } else {
-            0
+            // Beside an undamped resonance single steps may change it by more.
+            self.stationary.saturating_sub(1)
         };
         let next = match self.memory.unused.take() {
             Some(old) => point.try_clone_into(old)?,

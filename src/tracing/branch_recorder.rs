@@ -6,7 +6,7 @@ use crate::options::MAX_REFINEMENT;
 use crate::results::stored::mode_branch::ModePoint;
 use crate::results::watched::responses;
 use crate::results::{Branch, Record, SeenWithError, SpecialKind, Verdict};
-use crate::tracing::sampled_ripples::{Maximum, are_ripples};
+use crate::tracing::sampled_ripples::{EXACT_SAMPLES, Maximum, are_ripples};
 use core::cmp::Ordering;
 use num_complex::Complex64;
 
@@ -204,9 +204,10 @@ impl<'a> BranchRecorder<'a> {
         }
         let mut found = Vec::new();
         for (number, special) in self.specials.iter().enumerate() {
-            if matches!(special.kind, SpecialKind::Peak) && special.numbers.sampling_error > 0.0 {
+            let may_be = matches!(special.kind, SpecialKind::Peak) && special.numbers.sampling_error > EXACT_SAMPLES;
+            if let Some(after) = may_be.then(|| self.points_before(special)).flatten() {
                 let maximum = Maximum {
-                    after: self.points_before(special),
+                    after,
                     amplitude: special.amplitude.norm() * special.resolution.condensed.length(),
                     error: special.numbers.sampling_error,
                 };
@@ -220,14 +221,13 @@ impl<'a> BranchRecorder<'a> {
         Ok(ripples)
     }
 
-    /// Number of points of the curve before a special point: those between whose frequencies it lies, as it may have been located a point
-    /// later.
-    fn points_before(&self, special: &SpecialRecord<'_>) -> usize {
+    /// Number of points of the curve before a special point: it lies between the last two, up to where it was located, that have its
+    /// frequency between them. `None` where no two have.
+    fn points_before(&self, special: &SpecialRecord<'_>) -> Option<usize> {
         let omega = self.branch.omega();
-        let is_between =
-            |k: usize| k > 0 && k < omega.len() && (omega[k - 1] - special.omega) * (omega[k] - special.omega) <= 0.0;
-        let near = [special.after, special.after.saturating_sub(1), special.after + 1];
-        near.into_iter().find(|k| is_between(*k)).unwrap_or(special.after)
+        let last = (special.after + 1).min(omega.len().saturating_sub(1));
+        let is_between = |k: &usize| (omega[k - 1] - special.omega) * (omega[*k] - special.omega) <= 0.0;
+        (1..=last).rev().find(is_between)
     }
 
     /// Completes the branch: the special points are numbered after the curve.

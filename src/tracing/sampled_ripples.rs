@@ -10,6 +10,10 @@ const CONTEXT: &str = "the peaks of the branch";
 /// Kind: tuned; measured on: regularised friction, bladed disks with few samples, laws of the caller.
 const LARGEST_RIPPLE: f64 = 1e-2;
 
+/// Error of sampling that is rounding: a point of the curve may then lie above its maximum by more.
+/// Kind: rounding.
+pub(crate) const EXACT_SAMPLES: f64 = 1e-9;
+
 /// A maximum beside the curve, or a point of it.
 #[derive(Clone, Copy)]
 struct Height {

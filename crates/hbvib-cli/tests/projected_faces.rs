@@ -227,11 +227,12 @@ fn a_wheel_with_different_faces_and_an_axis_has_the_frequencies_of_its_assembly(
         let rigid = expected.iter().filter(|omega| **omega < 1e-4 * scale).count();
         assert_eq!(rigid, 6);
         for (k, (a, b)) in expected.iter().zip(&found).enumerate().take(30) {
-            // The tie at the axis gives by one part in 1e6.
+            // The tie at the axis gives by one part in 1e6; and rounding of its stiffness, 1e6 times the others, in rigid motions.
             let gap = (a * a - b * b).abs();
             assert!(
-                gap <= 5e-7 * a * a + 1e-8 * expected[6] * expected[6],
-                "{name}, mode {k}: {a} and {b}"
+                gap <= 5e-7 * a * a + 5e-8 * expected[6] * expected[6],
+                "{name}, mode {k}: {a} and {b}, beside {:?}",
+                &expected[..8]
             );
         }
     }

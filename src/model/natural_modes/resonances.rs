@@ -71,6 +71,14 @@ const RESONANCES_ENTRIES: usize = 9_000_000;
 /// Kind: cap; the work of the search grows with the square of the number.
 const RESONANCES_MOST_GYROSCOPIC: usize = 120;
 
+/// Degrees of freedom for each mode in that disc, below which a search takes longer than all modes.
+/// Kind: tuned; measured on: chains and dense structures of 40 to 100 masses, over narrow and wide ranges.
+const FEW_IN_RANGE: usize = 8;
+
+/// Width of a range over the sum of its ends from which on it counts as wide.
+/// Kind: tuned; measured on: chains and dense structures of 40 to 100 masses with gyroscopic forces.
+const WIDE_RANGE: f64 = 0.1;
+
 /// Degrees of freedom with gyroscopic forces up to which all modes by dense algebra cost less than a search.
 /// Kind: tuned; measured on: chains of 20 to 100 masses.
 const GYROSCOPIC_DENSE_UP_TO: usize = 30;
@@ -178,9 +186,12 @@ pub fn gyroscopic_frequencies(
     let n = problem.mass.rows;
     let number = h as f64;
     let mut values = None;
-    if n > GYROSCOPIC_DENSE_UP_TO {
+    // A wide range has most modes of a small structure: all are found at once.
+    let is_wide = high - low > WIDE_RANGE * (high + low) && n <= RESONANCES_DENSE_UP_TO;
+    if n > GYROSCOPIC_DENSE_UP_TO && !is_wide {
         let frequencies = Range::new(low * number, high * number);
-        values = within(problem, frequencies, RESONANCES_MOST_GYROSCOPIC, interrupt)?;
+        let most = RESONANCES_MOST_GYROSCOPIC.min(n / FEW_IN_RANGE);
+        values = within(problem, frequencies, most, interrupt)?;
     }
     if values.is_none() && n <= RESONANCES_DENSE_UP_TO {
         let mut all = Vec::new();
