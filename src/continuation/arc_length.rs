@@ -117,7 +117,10 @@ const ROUNDING_OF_MOTION: f64 = 1e-12;
 const ARC_LENGTH_ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Number of points in a row, no further apart, that show a branch which ends in rounding.
 /// Kind: cap.
-const MOST_STATIONARY: usize = 32;
+const MOST_STATIONARY: usize = 32 * OF_STATIONARY;
+/// Tiny steps, which change no parameter wherever the branch leads, that count as one point.
+/// Kind: cap.
+const OF_STATIONARY: usize = 8;
 
 /// Relative error of a prediction far below that which shortens steps.
 /// Kind: tuned; measured on: not recorded.
@@ -348,11 +351,13 @@ impl Continuation {
         self.note_size(&point);
         self.surfaces.left &= point.step < GROWN;
         let change = (point.parameter() - self.current.parameter()).abs();
-        self.stationary = if change <= ARC_LENGTH_ROUNDING * point.parameter().abs() && point.step > TINY {
-            self.stationary + 1
-        } else {
+        self.stationary = if change > ARC_LENGTH_ROUNDING * point.parameter().abs() {
             // Beside an undamped resonance single steps may change it by more.
-            self.stationary.saturating_sub(1)
+            self.stationary.saturating_sub(OF_STATIONARY)
+        } else if point.step > TINY {
+            self.stationary + OF_STATIONARY
+        } else {
+            self.stationary + 1
         };
         let next = match self.memory.unused.take() {
             Some(old) => point.try_clone_into(old)?,

@@ -33,10 +33,10 @@ const NOT_RECORDED: &str = "not recorded";
 const INTRODUCTION: &str = "\
 # Thresholds
 
-Named numbers of the library, by the folders of `src/`, `crates/numerics/src/` and `crates/dissection/src/`, without the C interface. Each row is made from the
-declaration and its comment, whose last sentence is the kind: `Kind: cap.`, or with a remark `Kind: cap; two or three suffice.` A tuned
-number says on what it was measured: `Kind: tuned; measured on: chains of 100 to 600 masses.` A test fails where the page is out of
-date, a name stands for two numbers or a kind is missing; CONTRIBUTING.md has the command that writes the page.
+Named numbers of the library, by the folders of `src/`, `crates/numerics/src/` and `crates/dissection/src/`, without the C interface. Each
+row is made from the declaration and its comment, whose last sentence is the kind: `Kind: cap.`, or with a remark `Kind: cap; two or three
+suffice.` A tuned number says on what it was measured: `Kind: tuned; measured on: chains of 100 to 600 masses.` A test fails where the page
+is out of date, a name stands for two numbers or a kind is missing; CONTRIBUTING.md has the command that writes the page.
 
 `tests/ledger` changes tuned numbers by a half and by two, and compares answers and work of stored cases.
 ";

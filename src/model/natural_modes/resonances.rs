@@ -71,7 +71,7 @@ const RESONANCES_ENTRIES: usize = 9_000_000;
 /// Kind: cap; the work of the search grows with the square of the number.
 const RESONANCES_MOST_GYROSCOPIC: usize = 120;
 
-/// Degrees of freedom for each mode in that disc, below which a search takes longer than all modes.
+/// Degrees of freedom for each mode in that disc, below which a search takes longer than all modes of a small structure.
 /// Kind: tuned; measured on: chains and dense structures of 40 to 100 masses, over narrow and wide ranges.
 const FEW_IN_RANGE: usize = 8;
 
@@ -190,7 +190,11 @@ pub fn gyroscopic_frequencies(
     let is_wide = high - low > WIDE_RANGE * (high + low) && n <= RESONANCES_DENSE_UP_TO;
     if n > GYROSCOPIC_DENSE_UP_TO && !is_wide {
         let frequencies = Range::new(low * number, high * number);
-        let most = RESONANCES_MOST_GYROSCOPIC.min(n / FEW_IN_RANGE);
+        let most = if n <= RESONANCES_DENSE_UP_TO {
+            n / FEW_IN_RANGE
+        } else {
+            RESONANCES_MOST_GYROSCOPIC
+        };
         values = within(problem, frequencies, most, interrupt)?;
     }
     if values.is_none() && n <= RESONANCES_DENSE_UP_TO {
