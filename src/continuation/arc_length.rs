@@ -352,8 +352,7 @@ impl Continuation {
         self.surfaces.left &= point.step < GROWN;
         let change = (point.parameter() - self.current.parameter()).abs();
         self.stationary = if change > ARC_LENGTH_ROUNDING * point.parameter().abs() {
-            // Beside an undamped resonance single steps may change it by more.
-            self.stationary.saturating_sub(OF_STATIONARY)
+            0
         } else if point.step > TINY {
             self.stationary + OF_STATIONARY
         } else {

@@ -202,32 +202,22 @@ impl<'a> BranchRecorder<'a> {
         if !leads || self.branch.mode_data().is_some() {
             return Ok(ripples);
         }
-        let mut found = Vec::new();
+        let (mut maxima, mut numbers) = (Vec::new(), Vec::new());
         for (number, special) in self.specials.iter().enumerate() {
-            let may_be = matches!(special.kind, SpecialKind::Peak) && special.numbers.sampling_error > EXACT_SAMPLES;
-            if let Some(after) = may_be.then(|| self.points_before(special)).flatten() {
+            if matches!(special.kind, SpecialKind::Peak) && special.numbers.sampling_error > EXACT_SAMPLES {
                 let maximum = Maximum {
-                    after,
+                    after: special.after,
                     amplitude: special.amplitude.norm() * special.resolution.condensed.length(),
                     error: special.numbers.sampling_error,
                 };
-                try_push(&mut found, (number, maximum), CONTEXT)?;
+                try_push(&mut maxima, maximum, CONTEXT)?;
+                try_push(&mut numbers, number, CONTEXT)?;
             }
         }
-        found.sort_by_key(|(_, maximum)| maximum.after);
-        for (number, is_ripple) in are_ripples(self.branch.amplitude(), &found)? {
+        for (number, is_ripple) in numbers.into_iter().zip(are_ripples(self.branch.amplitude(), &maxima)?) {
             ripples[number] = is_ripple;
         }
         Ok(ripples)
-    }
-
-    /// Number of points of the curve before a special point: it lies between the last two, up to where it was located, that have its
-    /// frequency between them. `None` where no two have.
-    fn points_before(&self, special: &SpecialRecord<'_>) -> Option<usize> {
-        let omega = self.branch.omega();
-        let last = (special.after + 1).min(omega.len().saturating_sub(1));
-        let is_between = |k: &usize| (omega[k - 1] - special.omega) * (omega[*k] - special.omega) <= 0.0;
-        (1..=last).rev().find(is_between)
     }
 
     /// Completes the branch: the special points are numbered after the curve.

@@ -29,12 +29,12 @@ pub(crate) struct Maximum {
     pub error: f64,
 }
 
-/// For each maximum, with its number, in the order along the curve, whether it is a ripple: on one side there is a higher maximum, or the curve rises above
+/// For each maximum, in the order along the curve, whether it is a ripple: on one side there is a higher maximum, or the curve rises above
 /// it by the error, before it has fallen by the error. Points of the curve have ripples as well, so that one may lie above its maximum.
 ///
 /// # Errors
 /// `OutOfMemory`.
-pub(crate) fn are_ripples(curve: &[f64], maxima: &[(usize, Maximum)]) -> Result<Vec<(usize, bool)>> {
+pub(crate) fn are_ripples(curve: &[f64], maxima: &[Maximum]) -> Result<Vec<bool>> {
     let mut found = Vec::new();
     if maxima.is_empty() {
         return Ok(found);
@@ -47,7 +47,7 @@ pub(crate) fn are_ripples(curve: &[f64], maxima: &[(usize, Maximum)]) -> Result<
             maximum: None,
         };
         try_push(&mut line, height, CONTEXT)?;
-        while let Some((_, found)) = maxima.get(next).filter(|(_, found)| found.after <= point + 1) {
+        while let Some(found) = maxima.get(next).filter(|found| found.after <= point + 1) {
             let height = Height {
                 amplitude: found.amplitude,
                 maximum: Some(next),
@@ -58,11 +58,10 @@ pub(crate) fn are_ripples(curve: &[f64], maxima: &[(usize, Maximum)]) -> Result<
     }
     for (at, height) in line.iter().enumerate() {
         let Some(number) = height.maximum else { continue };
-        let (own, maximum) = &maxima[number];
-        let error = maximum.error.min(LARGEST_RIPPLE);
+        let error = maxima[number].error.min(LARGEST_RIPPLE);
         let is_ripple = error > 0.0
             && (rises(line[..at].iter().rev(), *height, error) || rises(line[at + 1..].iter(), *height, error));
-        try_push(&mut found, (*own, is_ripple), CONTEXT)?;
+        try_push(&mut found, is_ripple, CONTEXT)?;
     }
     Ok(found)
 }
@@ -87,25 +86,12 @@ mod tests {
 
     /// Whether the maxima (points before, amplitude) on a curve are ripples for an error.
     fn ripples(curve: &[f64], maxima: &[(usize, f64)], error: f64) -> Vec<bool> {
-        let all: Vec<(usize, Maximum)> = maxima
-            .iter()
-            .enumerate()
-            .map(|(number, &(after, amplitude))| {
-                (
-                    number,
-                    Maximum {
-                        after,
-                        amplitude,
-                        error,
-                    },
-                )
-            })
-            .collect();
-        are_ripples(curve, &all)
-            .unwrap()
-            .into_iter()
-            .map(|(_, is_ripple)| is_ripple)
-            .collect()
+        let maximum = |&(after, amplitude): &(usize, f64)| Maximum {
+            after,
+            amplitude,
+            error,
+        };
+        are_ripples(curve, &maxima.iter().map(maximum).collect::<Vec<_>>()).unwrap()
     }
 
     #[test]

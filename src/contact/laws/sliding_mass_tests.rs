@@ -1,8 +1,8 @@
 //! Tests of sliders that are masses, against steps in time.
 
 use super::SlidingMass;
-use crate::contact::forms::law::PackedMotion;
-use crate::contact::forms::law::{PiecewiseLinear, SlidingEnds};
+use crate::contact::forms::law::{PackedMotion, PiecewiseLinear, SlidingEnds};
+use crate::contact::forms::piece::Piece;
 use crate::fourier::{HarmonicSet, TurningPoints, jet};
 use crate::interrupt::Interrupt;
 use std::f64::consts::PI;
@@ -42,6 +42,21 @@ fn stepped(set: &HarmonicSet, x: &[f64], half_turns: usize) -> Vec<f64> {
     force
 }
 
+/// The time by which a half turn does not repeat itself, and its pieces.
+fn followed(law: &SlidingMass, set: &HarmonicSet, motion: &[f64]) -> (f64, Vec<Piece>) {
+    let none = Interrupt::none();
+    let (mut extrema, mut pieces) = (Vec::with_capacity(64), Vec::with_capacity(256));
+    let mut turning = TurningPoints::new(set).unwrap();
+    turning.find(set, motion, &mut extrema, &none).unwrap();
+    let at = PackedMotion {
+        set,
+        motion,
+        omega: 1.0,
+    };
+    let apart = law.follow(at, &extrema, &mut pieces, &none).unwrap();
+    (apart, pieces)
+}
+
 #[test]
 fn forces_are_those_of_steps_in_time() {
     let set = HarmonicSet::excited(&[1], 7, true, true, false).unwrap();
@@ -50,26 +65,9 @@ fn forces_are_those_of_steps_in_time() {
         limit: 1.0,
         late: 0.0,
     };
-    let none = Interrupt::none();
     for seed in 0..32 {
         let x = motion(&set, seed);
-        let (mut extrema, mut pieces) = (Vec::with_capacity(64), Vec::with_capacity(256));
-        TurningPoints::new(&set)
-            .unwrap()
-            .find(&set, &x, &mut extrema, &none)
-            .unwrap();
-        let apart = law
-            .follow(
-                PackedMotion {
-                    set: &set,
-                    motion: &x,
-                    omega: 1.0,
-                },
-                &extrema,
-                &mut pieces,
-                &none,
-            )
-            .unwrap();
+        let (apart, pieces) = followed(&law, &set, &x);
         assert!(apart == 0.0, "{seed}: {apart:e}");
         // An odd number of half turns, whose last one has the sign of the motion.
         let force = stepped(&set, &x, 81);
@@ -101,7 +99,6 @@ fn half_turns_that_do_not_repeat_themselves_are_told() {
         limit: 1.0,
         late: 0.1,
     };
-    let none = Interrupt::none();
     let apart = |first: f64| {
         let x = [
             first,
@@ -111,22 +108,7 @@ fn half_turns_that_do_not_repeat_themselves_are_told() {
             0.0,
             0.049_747_394_157_306_31,
         ];
-        let (mut extrema, mut pieces) = (Vec::with_capacity(64), Vec::with_capacity(256));
-        TurningPoints::new(&set)
-            .unwrap()
-            .find(&set, &x, &mut extrema, &none)
-            .unwrap();
-        law.follow(
-            PackedMotion {
-                set: &set,
-                motion: &x,
-                omega: 1.0,
-            },
-            &extrema,
-            &mut pieces,
-            &none,
-        )
-        .unwrap()
+        followed(&law, &set, &x).0
     };
     let found = apart(1.5015);
     assert!(found > 1e-8 && found < 1e-4, "{found:e}");

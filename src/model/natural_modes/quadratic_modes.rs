@@ -12,7 +12,6 @@ use crate::linalg::dense::eigen;
 use crate::linalg::exact_sums::quadratic::quadratic;
 use crate::linalg::factors::factor::Factor;
 use crate::linalg::libraries::{DMatrix, Schur};
-use crate::linalg::sparse_storage::held_rows::MovingRows;
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::natural_modes::quadratic_problem::{Pair, QUADRATIC_PROBLEM_REAL, Quadratic, is_one};
 use crate::model::natural_modes::quadratic_search::lowest_by_search;
@@ -57,15 +56,7 @@ impl Quadratic<'_> {
     /// Those of the eigensolvers; `NoConvergence`, `OutOfMemory`, `StoppedByCaller`.
     pub fn lowest(&self, count: usize, interrupt: &Interrupt<'_>) -> Result<Vec<Pair>> {
         let hermitian = self.hermitian_stiffness()?;
-        if let Some(moving) = MovingRows::of(&hermitian)? {
-            let parts = [self.mass, self.damping, self.stiffness].map(|a| moving.reduced(a));
-            let [mass, damping, stiffness] = parts;
-            let reduced = Quadratic {
-                mass: &mass?,
-                damping: &damping?,
-                stiffness: &stiffness?,
-            };
-            let mut pairs = reduced.lowest(count, interrupt)?;
+        if let Some((mut pairs, moving)) = self.on_moving_rows(&hermitian, |moving| moving.lowest(count, interrupt))? {
             for pair in &mut pairs {
                 pair.1 = moving.expanded(&pair.1)?;
             }

@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::linalg::exact_sums::quadratic::{QUADRATIC_ROUNDING, quadratic, terms};
 use crate::linalg::inner;
+use crate::linalg::sparse_storage::held_rows::MovingRows;
 use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use num_complex::Complex64;
 
@@ -43,6 +44,28 @@ impl Quadratic<'_> {
                 (half, &transposed, Form::Conjugated),
             ],
         )
+    }
+
+    /// Result of `ask` for the problem of the rows that move, with these rows; `None` where all do.
+    ///
+    /// # Errors
+    /// Those of `ask`; `OutOfMemory`.
+    pub fn on_moving_rows<T>(
+        &self,
+        hermitian: &Csc,
+        ask: impl FnOnce(&Quadratic<'_>) -> Result<T>,
+    ) -> Result<Option<(T, MovingRows)>> {
+        let Some(moving) = MovingRows::of(hermitian)? else {
+            return Ok(None);
+        };
+        let parts = [self.mass, self.damping, self.stiffness].map(|a| moving.reduced(a));
+        let [mass, damping, stiffness] = parts;
+        let found = ask(&Quadratic {
+            mass: &mass?,
+            damping: &damping?,
+            stiffness: &stiffness?,
+        })?;
+        Ok(Some((found, moving)))
     }
 
     /// The eigenvalue, if it belongs to a mode: it oscillates, or grows and is then real. `None` for a motion that is

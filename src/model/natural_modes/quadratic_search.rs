@@ -9,7 +9,6 @@ use crate::interrupt::Interrupt;
 use crate::linalg::iterative::lanczos;
 use crate::linalg::iterative::near_shift::{Goal, Near, NearShift};
 use crate::linalg::sparse_storage::definite::resists_all_motion;
-use crate::linalg::sparse_storage::held_rows::MovingRows;
 use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::natural_modes::quadratic_problem::{ONE_VALUE, Pair, Quadratic, is_one};
 use crate::options::Range;
@@ -110,15 +109,9 @@ pub fn within(
     most: usize,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<Vec<Complex64>>> {
-    if let Some(moving) = MovingRows::of(&problem.hermitian_stiffness()?)? {
-        let parts = [problem.mass, problem.damping, problem.stiffness].map(|a| moving.reduced(a));
-        let [mass, damping, stiffness] = parts;
-        let reduced = Quadratic {
-            mass: &mass?,
-            damping: &damping?,
-            stiffness: &stiffness?,
-        };
-        return within(&reduced, range, most, interrupt);
+    let hermitian = problem.hermitian_stiffness()?;
+    if let Some((found, _)) = problem.on_moving_rows(&hermitian, |moving| within(moving, range, most, interrupt))? {
+        return Ok(found);
     }
     let middle = 0.5 * (range.low() + range.high());
     let radius = SQRT_2 * (0.5 * range.width()).max(RATIO_WITHIN * middle);

@@ -71,10 +71,6 @@ const RESONANCES_ENTRIES: usize = 9_000_000;
 /// Kind: cap; the work of the search grows with the square of the number.
 const RESONANCES_MOST_GYROSCOPIC: usize = 120;
 
-/// Degrees of freedom for each mode in that disc, below which a search takes longer than all modes of a small structure.
-/// Kind: tuned; measured on: chains and dense structures of 40 to 100 masses, over narrow and wide ranges.
-const FEW_IN_RANGE: usize = 8;
-
 /// Width of a range over the sum of its ends from which on it counts as wide.
 /// Kind: tuned; measured on: chains and dense structures of 40 to 100 masses with gyroscopic forces.
 const WIDE_RANGE: f64 = 0.1;
@@ -185,17 +181,13 @@ pub fn gyroscopic_frequencies(
     let (low, high) = (range.low(), range.high());
     let n = problem.mass.rows;
     let number = h as f64;
+    // A wide range has most modes of a small structure.
+    let is_wide = high - low > WIDE_RANGE * (high + low);
+    let by_dense_algebra = n <= GYROSCOPIC_DENSE_UP_TO || n <= RESONANCES_DENSE_UP_TO && is_wide;
     let mut values = None;
-    // A wide range has most modes of a small structure: all are found at once.
-    let is_wide = high - low > WIDE_RANGE * (high + low) && n <= RESONANCES_DENSE_UP_TO;
-    if n > GYROSCOPIC_DENSE_UP_TO && !is_wide {
+    if !by_dense_algebra {
         let frequencies = Range::new(low * number, high * number);
-        let most = if n <= RESONANCES_DENSE_UP_TO {
-            n / FEW_IN_RANGE
-        } else {
-            RESONANCES_MOST_GYROSCOPIC
-        };
-        values = within(problem, frequencies, most, interrupt)?;
+        values = within(problem, frequencies, RESONANCES_MOST_GYROSCOPIC, interrupt)?;
     }
     if values.is_none() && n <= RESONANCES_DENSE_UP_TO {
         let mut all = Vec::new();
