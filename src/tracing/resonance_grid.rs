@@ -7,6 +7,7 @@
 use crate::error::{Result, try_push};
 use crate::model::natural_modes::resonances::Resonance;
 use crate::options::Range;
+use num_complex::Complex64;
 
 /// Distances from a pole in half widths. Those of equidistant poles that overlap do not coincide.
 /// Kind: tuned; measured on: not recorded.
@@ -19,6 +20,10 @@ const RESONANCE_GRID_BESIDE: usize = 5;
 /// Least ratio of the distances of two such points.
 /// Kind: tuned; measured on: not recorded.
 const RESONANCE_GRID_RATIO: f64 = 2.0;
+
+/// Ratio from which the response between two poles is computed in their middle, too.
+/// Kind: tuned; measured on: random chains and dense matrices, whose maxima between resonances are known.
+const RESONANCE_GRID_WIDE: f64 = 3.0;
 
 /// Equidistant points over the whole range.
 /// Kind: tuned; measured on: not recorded.
@@ -34,9 +39,9 @@ const CONTEXT: &str = "the frequencies of a linear response";
 pub(crate) struct LinearGrid {
     /// Parameter values of the grid, ascending.
     values: Vec<f64>,
-    /// Parameter values of undamped resonances, where the response is unbounded if it is excited.
-    pub undamped: Vec<f64>,
-    /// The first of them that was passed and is excited.
+    /// The resonances, ascending.
+    poles: Vec<Resonance>,
+    /// The first undamped one that was passed and is excited: the response is unbounded there.
     pub unbounded: Option<f64>,
 }
 
@@ -45,15 +50,29 @@ impl LinearGrid {
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(resonances: &[Resonance], range: Range) -> Result<Self> {
-        let mut undamped = Vec::new();
-        for r in resonances.iter().filter(|r| r.is_undamped()) {
-            try_push(&mut undamped, r.omega, CONTEXT)?;
-        }
+    pub fn new(poles: Vec<Resonance>, range: Range) -> Result<Self> {
         Ok(Self {
-            values: values(resonances, range)?,
-            undamped,
+            values: values(&poles, range)?,
+            poles,
             unbounded: None,
+        })
+    }
+
+    /// Parameter values of undamped resonances.
+    pub fn undamped(&self) -> impl Iterator<Item = f64> + '_ {
+        self.poles
+            .iter()
+            .filter(|pole| pole.is_undamped())
+            .map(|pole| pole.omega)
+    }
+
+    /// The complex poles next to an interval, below and above it.
+    pub fn poles_beside(&self, from: f64, to: f64) -> [Option<Complex64>; 2] {
+        let above = self.poles.partition_point(|pole| pole.omega < to);
+        let below = self.poles.partition_point(|pole| pole.omega <= from).checked_sub(1);
+        [below, Some(above)].map(|place| {
+            let pole = self.poles.get(place?)?;
+            Some(Complex64::new(pole.omega, pole.half_width))
         })
     }
 
@@ -113,6 +132,9 @@ fn values(resonances: &[Resonance], range: Range) -> Result<Vec<f64>> {
                 add(pole.omega + sense * distance)?;
                 distance *= ratio;
             }
+            if sense > 0.0 && ratio > RESONANCE_GRID_WIDE {
+                add(bound)?;
+            }
         }
     }
     try_push(&mut found, low, CONTEXT)?;
@@ -132,7 +154,7 @@ mod tests {
 
     #[test]
     fn the_distance_of_neighbours_has_a_bound_if_one_is_given() {
-        let grid = LinearGrid::new(&[], (0.0, 1.0).into()).unwrap();
+        let grid = LinearGrid::new(Vec::new(), (0.0, 1.0).into()).unwrap();
         for (most, count) in [(f64::INFINITY, BASE), (0.01, 3 * BASE)] {
             for rising in [true, false] {
                 let (mut at, end) = if rising { (0.0, 1.0) } else { (1.0, 0.0) };

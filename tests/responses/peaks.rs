@@ -1,7 +1,8 @@
 //! Peaks of every measure, against maxima of solutions at single frequencies, which know no peaks.
 
 use crate::common::chains::{chain, duffing};
-use crate::common::models::unit_chain;
+use crate::common::models::{self, unit_chain};
+use crate::common::random::{signed, unit};
 use crate::common::{at_dof, harmonics, omega_range};
 use hbvib::{Branch, Component, ForcedOptions, Hooks, Measure, Model, Response, SolverOptions, forced_response};
 use num_complex::Complex64;
@@ -174,6 +175,104 @@ fn a_linear_structure_has_the_peaks_of_each_degree_of_freedom() {
             assert!((a.amplitude / b.amplitude - 1.0).abs() < 1e-10, "{dof}");
         }
     }
+}
+
+/// An uneven chain between walls with hardly any damping: masses, springs, and the factor of its stiffness damping.
+struct Uneven {
+    masses: Vec<f64>,
+    springs: Vec<f64>,
+    beta: f64,
+}
+
+impl Uneven {
+    fn drawn(n: usize, state: &mut u64) -> Self {
+        let mut around = |spread: f64| (spread * signed(state)).exp();
+        let masses = (0..n).map(|_| around(0.7)).collect();
+        let springs = (0..=n).map(|_| around(1.0)).collect();
+        let beta = 10_f64.powf(-5.0 + 2.0 * signed(state));
+        Self { masses, springs, beta }
+    }
+
+    fn model(&self) -> Model {
+        let mut model = models::chain(&self.masses, &self.springs)
+            .rayleigh(0.0, self.beta)
+            .build();
+        model.add_force(0, 1, 1.0.into()).unwrap();
+        model
+    }
+
+    /// The motion under a load, by elimination from the first mass to the last.
+    fn solved(&self, omega: f64, mut load: Vec<Complex64>) -> Vec<Complex64> {
+        let n = self.masses.len();
+        let stiff = Complex64::new(1.0, omega * self.beta);
+        let mut pivots = vec![Complex64::ZERO; n];
+        for i in 0..n {
+            pivots[i] = stiff * (self.springs[i] + self.springs[i + 1]) - omega * omega * self.masses[i];
+            if i > 0 {
+                let factor = -stiff * self.springs[i] / pivots[i - 1];
+                pivots[i] += factor * stiff * self.springs[i];
+                let before = load[i - 1];
+                load[i] -= factor * before;
+            }
+        }
+        for i in (0..n).rev() {
+            let beyond = if i + 1 < n {
+                stiff * self.springs[i + 1] * load[i + 1]
+            } else {
+                Complex64::ZERO
+            };
+            load[i] = (load[i] + beyond) / pivots[i];
+        }
+        load
+    }
+
+    /// d|x|/dω of a mass under a force of 1 on the first.
+    fn growth(&self, omega: f64, mass: usize) -> f64 {
+        let n = self.masses.len();
+        let mut force = vec![Complex64::ZERO; n];
+        force[0] = 1.0.into();
+        let x = self.solved(omega, force);
+        // Z x′ = −Z′ x with Z′ = −2 ω M + i β K.
+        let at = |i: usize| if i < n { x[i] } else { Complex64::ZERO };
+        let load = (0..n).map(|i| {
+            let before = if i > 0 { x[i - 1] } else { Complex64::ZERO };
+            let spring = self.springs[i] * (x[i] - before) + self.springs[i + 1] * (x[i] - at(i + 1));
+            2.0 * omega * self.masses[i] * x[i] - Complex64::new(0.0, self.beta) * spring
+        });
+        let slope = self.solved(omega, load.collect());
+        (x[mass].conj() * slope[mass]).re / x[mass].norm()
+    }
+}
+
+/// Far from every resonance a response has broad maxima beside its zeros, which steps between resonances would pass.
+#[test]
+fn broad_maxima_between_resonances_are_peaks() {
+    let mut state = 11;
+    let mut broad = 0;
+    for case in 0..40 {
+        let chain = Uneven::drawn([12, 33, 60, 90][case % 4], &mut state);
+        let mass = (unit(&mut state) * 6.0) as usize;
+        let range = (0.3, 2.0);
+        let options = at_dof(mass, solver());
+        let sweep = omega_range(range.0, range.1);
+        let branch = forced_response(&chain.model(), &options, &sweep, &mut Hooks::default()).unwrap();
+        let found: Vec<f64> = branch.peaks().iter().map(|peak| peak.omega).collect();
+        for omega in &found {
+            let beside = [1.0 - 1e-7, 1.0 + 1e-7].map(|factor| chain.growth(factor * omega, mass));
+            assert!(beside[0] > 0.0 && beside[1] < 0.0, "{case}: {omega} is no maximum");
+        }
+        let places: Vec<f64> = (0..=3000)
+            .map(|i| range.0 + (range.1 - range.0) * f64::from(i) / 3000.0)
+            .collect();
+        for pair in places.windows(2) {
+            if chain.growth(pair[0], mass) > 0.0 && chain.growth(pair[1], mass) <= 0.0 {
+                let is_found = found.iter().any(|omega| (pair[0]..=pair[1]).contains(omega));
+                assert!(is_found, "{case}: no peak between {} and {}", pair[0], pair[1]);
+                broad += 1;
+            }
+        }
+    }
+    assert!(broad > 400, "{broad}");
 }
 
 /// A chain of 120 masses between walls, whose modes are sines: with a damping ratio that all modes share the response is a sum in closed
