@@ -29,8 +29,8 @@ pub(crate) struct Maximum {
     pub error: f64,
 }
 
-/// For each maximum, in the order along the curve, whether it is a ripple: on one side there is a higher maximum, or the curve rises above
-/// it by the error, before it has fallen by the error. Points of the curve have ripples as well, so that one may lie above its maximum.
+/// For each maximum, in the order along the curve, whether it is a ripple: on one side there is a higher maximum, or the curve ends above it
+/// by the error, before it has fallen by the error. Points of the curve have ripples as well, so that one may lie above its maximum.
 ///
 /// # Errors
 /// `OutOfMemory`.
@@ -66,18 +66,20 @@ pub(crate) fn are_ripples(curve: &[f64], maxima: &[Maximum]) -> Result<Vec<bool>
     Ok(found)
 }
 
-/// Whether a line rises above a maximum before it has fallen, both by a relative error.
+/// Whether a line rises above a maximum before it has fallen, both by a relative error: to a higher maximum, or to where the line ends. A
+/// summit whose own maximum was stepped over, as one of many narrow ones may be, leaves the highest of those found on it.
 fn rises<'a>(line: impl Iterator<Item = &'a Height>, maximum: Height, error: f64) -> bool {
+    let mut last = maximum.amplitude;
     for other in line {
         if other.amplitude < maximum.amplitude * (1.0 - error) {
             return false;
         }
-        let above = if other.maximum.is_some() { 0.0 } else { error };
-        if other.amplitude > maximum.amplitude * (1.0 + above) {
+        if other.maximum.is_some() && other.amplitude > maximum.amplitude {
             return true;
         }
+        last = other.amplitude;
     }
-    false
+    last > maximum.amplitude * (1.0 + error)
 }
 
 #[cfg(test)]
@@ -107,5 +109,9 @@ mod tests {
         assert_eq!(ripples(&saddle, &two, 1e-2), [true, false]);
         // A point of the curve that lies above the maximum by less than the error.
         assert_eq!(ripples(&[1.0, 1.1, 1.2005, 1.1, 1.0], &[(3, 1.2)], 1e-2), [false]);
+        // A summit whose highest maximum was stepped over keeps the highest of those found; a slope that ends higher has none.
+        let (summit, found) = ([1.0, 1.1, 1.18, 1.2, 1.18, 1.1, 1.0], [(2, 1.17), (5, 1.181)]);
+        assert_eq!(ripples(&summit, &found, 1e-3), [true, false]);
+        assert_eq!(ripples(&summit[..4], &found[..1], 1e-3), [true]);
     }
 }
