@@ -4,6 +4,7 @@
 use crate::condense::by_factors::flexibility::{Slopes, Table, Workspace};
 use crate::condense::by_modes::modal_rows::ModalRows;
 use crate::condense::by_modes::modal_table::{ModalTable, ModalWork};
+use crate::condense::by_modes::mode_flexibility::BEYOND_ITS_ERROR;
 use crate::condense::{Condensed, FlexibilityWay};
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
@@ -36,10 +37,6 @@ const ALL_MODAL_SLOPES_UP_TO: usize = 8;
 /// contacts the other columns cost less than the factors.
 /// Kind: tuned; measured on: a wheel of 24 contacts.
 const EXCITED_ALONE_FROM: usize = 8;
-
-/// Deviation of a sum from a refined solution over the error of a factorisation.
-/// Kind: tuned; measured on: not recorded.
-const BEYOND_FACTORS: f64 = 10.0;
 
 /// Flexibility tables of all carried harmonics at one frequency.
 pub struct FrequencyCache {
@@ -364,7 +361,7 @@ fn agreement(
             outputs,
         )
         .1;
-        if !(of_modes <= allowed[part].max(BEYOND_FACTORS * of_factors) && of_factors.is_finite()) {
+        if !(of_modes <= allowed[part].max(BEYOND_ITS_ERROR * of_factors) && of_factors.is_finite()) {
             return Ok(false);
         }
     }

@@ -83,7 +83,7 @@ const CONTEXT: &str = "the continuation";
 
 /// Least cosine between the directions of the branch at the two ends of one step.
 /// Kind: tuned; measured on: not recorded.
-const STRAIGHT: f64 = 0.5;
+pub(crate) const STRAIGHT: f64 = 0.5;
 
 /// Step below which a failure counts as a corner of the branch, and no resonance is looked for.
 /// Kind: tuned; measured on: not recorded.
@@ -93,9 +93,9 @@ const CORNER_STEP: f64 = 1e-6;
 /// Kind: tuned; measured on: not recorded.
 const GROWN: f64 = 1e-3;
 
-/// Least cosine between the branch beyond a corner and its direction as predicted there.
+/// Least cosine between two directions that differ by the turn of a smooth branch alone, as beyond a corner and as predicted there.
 /// Kind: tuned; measured on: not recorded.
-const ALONG: f64 = 0.9;
+pub(crate) const ALONG: f64 = 0.9;
 
 /// Angle in radians between two directions up to which they are one line, per length of the step between them, and its bounds:
 /// the branch itself turns along a step.
@@ -136,7 +136,7 @@ const TINY: f64 = 1e-6;
 
 /// Share of the way to a resonance that a step goes which would pass it.
 /// Kind: tuned; measured on: not recorded.
-const ARC_LENGTH_APPROACH: f64 = 0.5;
+pub(crate) const APPROACH: f64 = 0.5;
 
 /// Outcome of one step: prediction and correction.
 enum Attempt {
@@ -313,7 +313,7 @@ impl Continuation {
                         continue;
                     }
                     if let Some(share) = self.crossed(problem, (&point, length), known, interrupt)? {
-                        self.steps.at_most(ARC_LENGTH_APPROACH * share * length);
+                        self.steps.at_most(APPROACH * share * length);
                         continue;
                     }
                     self.steps
@@ -327,7 +327,7 @@ impl Continuation {
                         return Ok(Advance::Stopped(Status::StoppedStepTooSmall));
                     }
                 }
-                Attempt::Passed { share } => self.steps.at_most(ARC_LENGTH_APPROACH * share * length),
+                Attempt::Passed { share } => self.steps.at_most(APPROACH * share * length),
                 Attempt::Failed => {
                     // The code below uses the corrector again.
                     let failure = self.corrector.failure();

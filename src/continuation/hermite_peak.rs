@@ -30,33 +30,39 @@ const MOST_SOLUTIONS: usize = 4;
 const CLOSE_BY: f64 = 1e-6;
 const CLOSE_BY_PARAMETER: f64 = 1e-9;
 
-/// Step of a difference of the polynomial, over the distance of the ends.
-/// Kind: tuned; measured on: not recorded.
-const OF_DIFFERENCE: f64 = 1e-3;
-
-/// Weights of a value and of its derivative, each with its derivative by the parameter.
-#[derive(Clone, Copy)]
+/// Weights of a value and of its derivative, each with its first and its second derivative by the parameter.
+#[derive(Clone, Copy, Default)]
 struct Weights {
-    value: (f64, f64),
-    slope: (f64, f64),
+    value: (f64, f64, f64),
+    slope: (f64, f64, f64),
 }
 
 /// Weights of all nodes at the parameter p; `places` are the parameters of the nodes.
 fn weights(places: &[f64], p: f64, found: &mut [Weights]) {
     for (i, (&own, weights)) in places.iter().zip(found.iter_mut()).enumerate() {
-        // l, dl/dp, and dl/dp at the node.
-        let (mut l, mut dl, mut at_node) = (1.0, 0.0, 0.0);
+        // l, dl/dp and d²l/dp², and dl/dp at the node.
+        let (mut l, mut dl, mut ddl, mut at_node) = (1.0, 0.0, 0.0, 0.0);
         for (_, &other) in places.iter().enumerate().filter(|(m, _)| *m != i) {
             let width = own - other;
+            ddl = (ddl * (p - other) + 2.0 * dl) / width;
             dl = (dl * (p - other) + l) / width;
             l *= (p - other) / width;
             at_node += 1.0 / width;
         }
         let (square, d_square, away) = (l * l, 2.0 * l * dl, p - own);
-        let h = 1.0 - 2.0 * at_node * away;
+        let dd_square = 2.0 * (dl * dl + l * ddl);
+        let (h, dh) = (1.0 - 2.0 * at_node * away, -2.0 * at_node);
         *weights = Weights {
-            value: (h * square, h * d_square - 2.0 * at_node * square),
-            slope: (away * square, square + away * d_square),
+            value: (
+                h * square,
+                h * d_square + dh * square,
+                h * dd_square + 2.0 * dh * d_square,
+            ),
+            slope: (
+                away * square,
+                square + away * d_square,
+                2.0 * d_square + away * dd_square,
+            ),
         };
     }
 }
@@ -101,28 +107,26 @@ impl<'p> Nodes<'p> {
             try_push(&mut points, point, CONTEXT)?;
             try_push(&mut places, point.parameter(), CONTEXT)?;
         }
-        let none = Weights {
-            value: (0.0, 0.0),
-            slope: (0.0, 0.0),
-        };
         Ok(Some(Self {
-            weights: try_vec(points.len(), none, CONTEXT)?,
+            weights: try_vec(points.len(), Weights::default(), CONTEXT)?,
             points,
             places,
             sense,
         }))
     }
 
-    /// Half the derivative of the squared amplitude along the branch at the parameter p.
-    fn growth(&mut self, p: f64) -> f64 {
+    /// Half the derivative of the squared amplitude along the branch at the parameter p, and its derivative by p.
+    fn growth(&mut self, p: f64) -> (f64, f64) {
         weights(&self.places, p, &mut self.weights);
-        let (mut z, mut dz) = (Complex64::ZERO, Complex64::ZERO);
+        let (mut z, mut dz, mut ddz) = (Complex64::ZERO, Complex64::ZERO, Complex64::ZERO);
         for (point, w) in self.points.iter().zip(&self.weights) {
             let by_parameter = point.slope / point.tangent[point.tangent.len() - 1];
             z += point.amplitude * w.value.0 + by_parameter * w.slope.0;
             dz += point.amplitude * w.value.1 + by_parameter * w.slope.1;
+            ddz += point.amplitude * w.value.2 + by_parameter * w.slope.2;
         }
-        self.sense * (z.conj() * dz).re
+        let bend = dz.norm_sqr() + (z.conj() * ddz).re;
+        (self.sense * (z.conj() * dz).re, self.sense * bend)
     }
 
     /// Interpolated unknowns and parameter at p.
@@ -161,12 +165,11 @@ impl Locator {
                 return Ok(None);
             };
             let range = (nodes[between.0].parameter(), nodes[between.1].parameter());
-            let [at_low, at_high] = [range.0, range.1].map(|p| near.growth(p));
+            let [at_low, at_high] = [range.0, range.1].map(|p| near.growth(p).0);
             let p = root((range.0, at_low), (range.1, at_high), |p| {
-                Ok::<_, Error>(near.growth(p))
+                Ok::<_, Error>(near.growth(p).0)
             })?;
-            let step = OF_DIFFERENCE * width;
-            let bend = (near.growth(p + step) - near.growth(p - step)) / (2.0 * step);
+            let (_, bend) = near.growth(p);
             // At a corner within the range the polynomial bends more than the branch.
             let secant = (at_high - at_low) / (range.1 - range.0);
             let bend = bend.abs().min(secant.abs());
@@ -233,19 +236,23 @@ mod tests {
     fn interpolation_is_exact_for_polynomials_of_its_order() {
         let f = |p: f64| 1.0 + p * (2.0 - p * (0.5 + p * (0.3 - p * (1.1 - p * (0.7 + p * (0.2 - 0.4 * p))))));
         let df = |p: f64| (f(p + 1e-6) - f(p - 1e-6)) / 2e-6;
+        let ddf = |p: f64| (f(p + 1e-3) - 2.0 * f(p) + f(p - 1e-3)) / 1e-6;
         let places = [0.3, 0.7, 0.8, 1.4];
-        let mut found = [Weights {
-            value: (0.0, 0.0),
-            slope: (0.0, 0.0),
-        }; 4];
+        let mut found = [Weights::default(); 4];
         for p in [0.35, 0.75, 1.0, 1.4] {
             weights(&places, p, &mut found);
-            let (mut value, mut slope) = (0.0, 0.0);
+            let (mut value, mut slope, mut bend) = (0.0, 0.0, 0.0);
             for (own, w) in places.iter().zip(&found) {
                 value += f(*own) * w.value.0 + df(*own) * w.slope.0;
                 slope += f(*own) * w.value.1 + df(*own) * w.slope.1;
+                bend += f(*own) * w.value.2 + df(*own) * w.slope.2;
             }
             assert!((value - f(p)).abs() < 1e-8 && (slope - df(p)).abs() < 1e-7, "{p}");
+            assert!(
+                (bend - ddf(p)).abs() < 1e-4 * ddf(p).abs().max(1.0),
+                "{p}: {bend} for {}",
+                ddf(p)
+            );
         }
     }
 }

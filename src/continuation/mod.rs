@@ -20,5 +20,5 @@ pub mod step_control;
 pub use arc_length::{Advance, Continuation};
 pub use linear_resonance::LinearResonance;
 pub use metric::Metric;
-pub use point::{Point, PointAt};
+pub use point::{ONE_SOLUTION, Point, PointAt};
 pub use settings::Settings;

@@ -9,6 +9,10 @@ use num_complex::Complex64;
 /// Kind: rounding.
 const POINT_ROUND_OFF: f64 = 1e-10;
 
+/// Distance of two solutions that are one, over their size.
+/// Kind: tuned; measured on: not recorded.
+pub const ONE_SOLUTION: f64 = 1e-6;
+
 /// A point with the index of its resolution.
 pub type PointAt<'p> = (&'p Point, usize);
 

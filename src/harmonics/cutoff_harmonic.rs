@@ -24,9 +24,10 @@ use std::sync::Arc;
 /// Kind: tuned; measured on: not recorded.
 const COMPLIANT: f64 = 0.5;
 
-/// Degrees of freedom up to which every harmonic may be checked.
+/// Degrees of freedom up to which a factorisation costs about as much as a sum over modes, so that every harmonic may be checked, and levels
+/// of harmonics need no modes.
 /// Kind: tuned; measured on: not recorded.
-const CUTOFF_HARMONIC_SMALL_UP_TO: usize = 32;
+pub(super) const SMALL_STRUCTURE: usize = 32;
 
 /// Harmonics up to which a model carries all waves: those of a thousand sectors. The memory of a wheel of more sectors
 /// than any machine has must not follow from their number.
@@ -59,7 +60,7 @@ pub(crate) fn affordable(condensed: &Condensed, unknowns: usize) -> usize {
 
 /// Number of harmonics that a condensed model must carry so that the waves of all higher harmonics are among its own.
 pub(super) fn all_waves(condensed: &Condensed) -> usize {
-    if condensed.ndof() > CUTOFF_HARMONIC_SMALL_UP_TO {
+    if condensed.ndof() > SMALL_STRUCTURE {
         return 0;
     }
     let all = 2 * condensed.in_step() * condensed.set().base();
@@ -287,7 +288,7 @@ fn spectral_norm(a: &[Complex64], [x, y]: &mut [Vec<Complex64>; 2]) -> f64 {
 /// Highest natural frequency over the waves of a small structure without its contacts; `None` if it is not known.
 fn highest_frequency(condensed: &Condensed, interrupt: &Interrupt<'_>) -> Result<Option<f64>> {
     let n = condensed.ndof();
-    if n > CUTOFF_HARMONIC_SMALL_UP_TO {
+    if n > SMALL_STRUCTURE {
         return Ok(None);
     }
     let mut highest = 0.0_f64;

@@ -2,19 +2,16 @@
 
 use crate::harmonics::extended_system::Factored;
 use crate::harmonics::work::{Sizes, Work};
+use crate::linalg::newton::linear_system::automatic::FACTORED_BLOCK;
 
 /// Factorisations of the block for which the work must suffice.
 /// Kind: tuned; measured on: not recorded.
 const FACTORISATIONS: f64 = 5.0;
 
-/// Unknowns of the block of an iterative solution: with more its factors cost more than the products that they spare.
-/// Kind: tuned; measured on: not recorded.
-const FACTORED_HARMONICS_BLOCK: f64 = 200.0;
-
 /// Factors the lowest harmonics in one block, as far as it is cheap and the work allows, and each other compliant one
 /// by itself.
 pub(super) fn factored(sizes: &Sizes, compliant: usize, work: &Work) -> Factored {
-    within(sizes, compliant, FACTORED_HARMONICS_BLOCK, work)
+    within(sizes, compliant, FACTORED_BLOCK as f64, work)
 }
 
 /// Factors all harmonics in one block; `None` if the work does not allow it. This is for contacts far stiffer than

@@ -6,6 +6,7 @@ use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::contact::Contact;
 use crate::error::{Result, boxed, try_push};
+use crate::harmonics::cutoff_harmonic::SMALL_STRUCTURE;
 use crate::harmonics::cutoff_harmonic::{self, CutoffHarmonic};
 use crate::harmonics::doubling::Doubling;
 use crate::harmonics::estimate::{CONTEXT, ESTIMATE_MARGIN, extended_options, or_unknown, relative};
@@ -17,6 +18,7 @@ use crate::harmonics::kept_changes::KeptChanges;
 use crate::harmonics::kept_ratio::KeptRatio;
 use crate::harmonics::one_extension::{Extent, extend_once};
 use crate::harmonics::second_estimate::SecondEstimate;
+use crate::harmonics::work::EVALUATIONS_OF_ESTIMATE;
 use crate::harmonics::work::{OF_A_POINT, OF_A_START, Sizes, Work};
 use crate::harmonics::{Corrected, Estimate, Solved};
 use crate::interrupt::{Interrupt, Phase};
@@ -27,18 +29,10 @@ use crate::problem::harmonic_balance::HarmonicBalance;
 use num_complex::Complex64;
 use std::sync::Arc;
 
-/// Evaluations, each with a product, for which the work must suffice.
-/// Kind: tuned; measured on: not recorded.
-const FORCED_RESPONSE_ERROR_EVALUATIONS: f64 = 6.0;
-
 /// Flexibility tables by factorisation of a full matrix after which all modes of a structure are expected to pay: they cost about
 /// 24 of them.
 /// Kind: tuned; measured on: not recorded.
 const FORCED_RESPONSE_ERROR_TABLES: usize = 4;
-
-/// Degrees of freedom up to which a factorisation costs about as much as a sum over modes.
-/// Kind: tuned; measured on: not recorded.
-const FORCED_RESPONSE_ERROR_SMALL: usize = 32;
 
 /// Share of the work of an estimate that told nothing that one of the same motion with more harmonics may take.
 /// Kind: tuned; measured on: not recorded.
@@ -262,7 +256,7 @@ impl<'a> ForcedEstimator<'a> {
         work.highest(
             (solved.condensed, enough),
             &self.options,
-            FORCED_RESPONSE_ERROR_EVALUATIONS,
+            EVALUATIONS_OF_ESTIMATE,
             |sizes| sizes.evaluation() + sizes.product(0.0, sizes.packed()),
         )
     }
@@ -406,7 +400,7 @@ impl<'a> ForcedEstimator<'a> {
         let pay = self.shared.tables > FORCED_RESPONSE_ERROR_TABLES * (n * n / stored.max(1));
         match self.shared.waves.some_have_modes() {
             // Few small factorisations cost no more.
-            Some(known) => known && (pay || condensed.ndof() > FORCED_RESPONSE_ERROR_SMALL),
+            Some(known) => known && (pay || condensed.ndof() > SMALL_STRUCTURE),
             None => pay,
         }
     }

@@ -4,6 +4,7 @@ use crate::condense::by_modes::wave_cache::have_modes;
 use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::error::{Result, fail, try_push};
 use crate::fourier::{HarmonicSet, gcd};
+use crate::harmonics::cutoff_harmonic::SMALL_STRUCTURE;
 use crate::harmonics::{affordable, allow_point, is_allowed};
 use crate::model::Model;
 use crate::options::{MAX_SAMPLES, SolverOptions};
@@ -14,10 +15,6 @@ const CONTEXT: &str = "the harmonics";
 /// Ratio of neighbouring levels.
 /// Kind: tuned; measured on: not recorded.
 const HARMONIC_LEVELS_RATIO: f64 = 1.25;
-
-/// Degrees of freedom above which a structure without modes of its waves is large.
-/// Kind: tuned; measured on: not recorded.
-const HARMONIC_LEVELS_LARGE: usize = 32;
 
 /// Unknowns above which no level is refined: Newton's method factors dense matrices.
 /// Kind: cap.
@@ -59,7 +56,7 @@ impl<'m> HarmonicLevels<'m> {
         condense: impl Fn(usize, Option<&Condensed>) -> Result<Condensed> + 'm,
     ) -> Result<Self> {
         let automatic = options.tolerance > 0.0;
-        let costly = automatic && model.ndof() > HARMONIC_LEVELS_LARGE && !have_modes(model)?;
+        let costly = automatic && model.ndof() > SMALL_STRUCTURE && !have_modes(model)?;
         let numbers = if automatic {
             automatic_numbers(options, forced)?
         } else {

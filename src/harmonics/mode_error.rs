@@ -13,6 +13,7 @@ use crate::harmonics::extended_newton::{FirstStep, extend};
 use crate::harmonics::extended_system::ExtendedSystem;
 use crate::harmonics::factored_harmonics::{factored, whole};
 use crate::harmonics::mode_doubling::{ModeRatios, ModeSeries};
+use crate::harmonics::work::EVALUATIONS_OF_ESTIMATE;
 use crate::harmonics::work::{OF_A_START, Sizes, Work};
 use crate::harmonics::{Corrected, Estimate, Solved};
 use crate::interrupt::{Interrupt, Phase};
@@ -23,10 +24,6 @@ use crate::options::{DampingForm, SolverOptions};
 use crate::problem::epmc::{Epmc, Gauge, LinearMode};
 use num_complex::Complex64;
 use std::sync::Arc;
-
-/// Evaluations, each with a product, for which the work must suffice.
-/// Kind: tuned; measured on: not recorded.
-const MODE_ERROR_EVALUATIONS: f64 = 6.0;
 
 /// Extended problems that are kept for the next point.
 /// Kind: cap.
@@ -188,7 +185,7 @@ impl<'a> ModeEstimator<'a> {
         work.highest(
             (solved.condensed, usize::MAX),
             &self.options,
-            MODE_ERROR_EVALUATIONS,
+            EVALUATIONS_OF_ESTIMATE,
             |sizes| sizes.evaluation() + sizes.product(0.0, sizes.packed()),
         )
     }

@@ -32,6 +32,10 @@ const WORK_MULTIPLE: f64 = 8.0;
 /// Kind: tuned; measured on: not recorded.
 const WORK_LEAST: f64 = 6e6;
 
+/// Evaluations, each with a product, for which the work of an estimate must suffice.
+/// Kind: tuned; measured on: not recorded.
+pub(super) const EVALUATIONS_OF_ESTIMATE: f64 = 6.0;
+
 /// Share of the work that is small.
 /// Kind: tuned; measured on: not recorded.
 const WORK_SMALL: f64 = 0.25;

@@ -33,7 +33,7 @@ use std::f64::consts::LN_10;
 
 /// Change of ln ω that has the same weight as a change of the motions by their size.
 /// Kind: tuned; measured on: not recorded.
-const EPMC_OMEGA_UNIT: f64 = 0.05;
+pub(crate) const OMEGA_UNIT: f64 = 0.05;
 
 /// Change of D that has the same weight.
 /// Kind: tuned; measured on: not recorded.
@@ -209,7 +209,7 @@ impl<'a> Epmc<'a> {
     pub fn frequency_and_damping(linear: &LinearMode, u: &[f64]) -> DampedFrequency {
         let n = u.len();
         DampedFrequency {
-            omega: linear.omega * (EPMC_OMEGA_UNIT * u[n - 2]).exp(),
+            omega: linear.omega * (OMEGA_UNIT * u[n - 2]).exp(),
             damping: linear.damping + DAMPING_UNIT * u[n - 1],
         }
     }
@@ -221,7 +221,7 @@ impl<'a> Epmc<'a> {
         u: &mut [f64],
     ) {
         let n = u.len();
-        u[n - 2] = (omega / linear.omega).ln() / EPMC_OMEGA_UNIT;
+        u[n - 2] = (omega / linear.omega).ln() / OMEGA_UNIT;
         u[n - 1] = (damping - linear.damping) / DAMPING_UNIT;
     }
 
@@ -234,7 +234,7 @@ impl<'a> Epmc<'a> {
     /// Relative change of the frequency that belongs to a small change of the unknowns.
     #[must_use]
     pub fn frequency_of_change(change: &[f64]) -> f64 {
-        EPMC_OMEGA_UNIT * change[change.len() - 2]
+        OMEGA_UNIT * change[change.len() - 2]
     }
 
     /// Shape x̂ of all degrees of freedom per unit of amplitude, harmonic after harmonic, at the point last
@@ -420,7 +420,7 @@ impl<'a> Epmc<'a> {
         if !(omega >= VANISHED * self.linear.omega && omega.is_finite()) {
             return fail!(Singular, "the angular frequency became {omega}: no vibration is left");
         }
-        let rates = (EPMC_OMEGA_UNIT * omega, DAMPING_UNIT);
+        let rates = (OMEGA_UNIT * omega, DAMPING_UNIT);
         self.forces.evaluate(motion, omega)?;
         let set = self.condensed.set();
         let m = set.packed_len();

@@ -13,12 +13,9 @@ use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::linalg::{dot, norm};
 use crate::sensitivity::adjoint::CONTEXT;
+use crate::sensitivity::central_differences::central_differences;
 use crate::sensitivity::fold_point::{Borders, FoldCondition};
 use crate::sensitivity::forced_point::ForcedPoint;
-
-/// Step of the differences along t, over the size of the motion.
-/// Kind: tuned; measured on: not recorded.
-const EXTREMUM_POINT_STEP: f64 = 1e-4;
 
 /// The matrix B at the point evaluated last, column-major, for a frequency unknown whose change by 1 changes ω by
 /// `unit`.
@@ -67,18 +64,14 @@ pub(crate) fn extremum_gradient(
     };
     let mut found = try_vec(m + 1, 0.0, CONTEXT)?;
     let mut moved = try_vec(m, 0.0, CONTEXT)?;
-    // The errors of two steps are even in the step.
-    for (step, share) in [(1.0, 4.0 / 3.0), (2.0, -1.0 / 3.0)] {
-        let step = step * EXTREMUM_POINT_STEP * whole;
-        for sign in [1.0, -1.0] {
-            for ((to, y), t) in moved.iter_mut().zip(u).zip(along) {
-                *to = y + sign * step * t;
-            }
-            let gradient = point.weighted_gradient(&moved, omega + sign * step * d_omega, (w, weight))?;
-            let factor = sign * share / (2.0 * step) / length;
-            for (x, g) in found.iter_mut().zip(&gradient) {
-                *x += factor * g;
-            }
+    for (step, share) in central_differences(whole) {
+        for ((to, y), t) in moved.iter_mut().zip(u).zip(along) {
+            *to = y + step * t;
+        }
+        let gradient = point.weighted_gradient(&moved, omega + step * d_omega, (w, weight))?;
+        let factor = share / length;
+        for (x, g) in found.iter_mut().zip(&gradient) {
+            *x += factor * g;
         }
     }
     Ok(found)

@@ -13,11 +13,8 @@ use crate::interrupt::Interrupt;
 use crate::linalg::factors::lu::Lu;
 use crate::linalg::norm;
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
+use crate::sensitivity::central_differences::central_differences;
 use crate::sensitivity::forced_point::ForcedPoint;
-
-/// Step of the differences along v, over the size of the motion.
-/// Kind: tuned; measured on: not recorded.
-const FOLD_POINT_STEP: f64 = 1e-4;
 
 /// Iterations for the first borders.
 /// Kind: tuned; measured on: not recorded.
@@ -146,21 +143,17 @@ pub(crate) fn fold_gradient(
         by_unknowns: try_vec(u.len() + 1, 0.0, CONTEXT)?,
         by_parameter: 0.0,
     };
-    let unit = FOLD_POINT_STEP * norm(u) / norm(&at.v);
-    // The errors of two steps are even in the step.
-    for (step, weight) in [(unit, 4.0 / 3.0), (2.0 * unit, -1.0 / 3.0)] {
-        for sign in [1.0, -1.0] {
-            let mut moved = try_copy(u, CONTEXT)?;
-            for (y, v) in moved.iter_mut().zip(&at.v) {
-                *y += sign * step * v;
-            }
-            let (gradient, adjoint) = point.residual_gradient(&moved, omega, &at.w)?;
-            let factor = sign * weight / (2.0 * step) / length;
-            for (x, g) in found.by_unknowns.iter_mut().zip(&gradient) {
-                *x += factor * g;
-            }
-            found.by_parameter += factor * by_parameter(&adjoint)?;
+    for (step, weight) in central_differences(norm(u) / norm(&at.v)) {
+        let mut moved = try_copy(u, CONTEXT)?;
+        for (y, v) in moved.iter_mut().zip(&at.v) {
+            *y += step * v;
         }
+        let (gradient, adjoint) = point.residual_gradient(&moved, omega, &at.w)?;
+        let factor = weight / length;
+        for (x, g) in found.by_unknowns.iter_mut().zip(&gradient) {
+            *x += factor * g;
+        }
+        found.by_parameter += factor * by_parameter(&adjoint)?;
     }
     Ok(found)
 }

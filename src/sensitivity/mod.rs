@@ -13,6 +13,7 @@
 //! it; `contact_products` and `structure_products` are the terms of the sum; `total_derivative` adds them.
 
 mod adjoint;
+mod central_differences;
 mod contact_products;
 mod design;
 mod extremum_point;
@@ -30,6 +31,7 @@ pub(crate) mod tracked;
 mod tracked_response;
 
 pub(crate) use adjoint::Adjoint;
+pub(crate) use central_differences::central_differences;
 pub(crate) use design::{design, design_with_bases};
 pub(crate) use forced_point::ForcedPoint;
 pub(crate) use friction_work::work_at_fixed_motion;

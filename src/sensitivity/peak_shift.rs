@@ -6,11 +6,8 @@
 use crate::error::{Result, try_vec};
 use crate::linalg::norm;
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
+use crate::sensitivity::central_differences::central_differences;
 use crate::sensitivity::forced_point::ForcedPoint;
-
-/// Distance of the differences over the width of the peak.
-/// Kind: tuned; measured on: not recorded.
-const PEAK_SHIFT_STEP: f64 = 5e-4;
 
 /// Change of the frequency relative to itself that tells the width of the peak where no contact moves.
 /// Kind: tuned; measured on: not recorded.
@@ -46,34 +43,34 @@ pub(crate) fn peak_shift(
         return Ok(shift);
     }
     let tangent = point.tangent(omega)?;
-    // The derivatives by ω of all values, from a pair of points at a distance.
-    let mut slopes = |step: f64| -> Result<Option<Vec<f64>>> {
-        let Some((mut above, below)) = along(point, &tangent, step)?.zip(along(point, &tangent, -step)?) else {
-            return Ok(None);
-        };
-        for (a, b) in above.iter_mut().zip(&below) {
-            *a = (*a - b) / (2.0 * step);
+    // The derivatives by ω of all values, from differences along the branch.
+    let mut slopes = |places: &[(f64, f64)]| -> Result<Option<Vec<f64>>> {
+        let mut sum = try_vec(count + 1, 0.0, CONTEXT)?;
+        for (step, weight) in places {
+            let Some(values) = along(point, &tangent, *step)? else {
+                return Ok(None);
+            };
+            for (to, value) in sum.iter_mut().zip(&values) {
+                *to += weight * value;
+            }
         }
-        Ok(Some(above))
+        Ok(Some(sum))
     };
     let speed = norm(&tangent);
     let width = if speed > 0.0 {
         norm(u) / speed
     } else {
-        let Some(probed) = slopes(PROBE * omega)? else {
+        let step = PROBE * omega;
+        let Some(probed) = slopes(&[(step, 0.5 / step), (-step, -0.5 / step)])? else {
             return Ok(shift);
         };
         (amplitude / probed[count].abs()).sqrt()
     };
-    let step = PEAK_SHIFT_STEP * width;
-    let Some((far, near)) = slopes(2.0 * step)?.zip(slopes(step)?) else {
+    let Some(slope) = slopes(&central_differences(width))? else {
         return Ok(shift);
     };
-    // The errors of both are even in the distance.
-    let slope = |k: usize| (4.0 * near[k] - far[k]) / 3.0;
-    let curvature = slope(count);
-    for (k, shift) in shift.iter_mut().enumerate() {
-        *shift = -slope(k) / curvature;
+    for (shift, by_parameter) in shift.iter_mut().zip(&slope) {
+        *shift = -by_parameter / slope[count];
     }
     Ok(shift)
 }

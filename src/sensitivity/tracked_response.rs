@@ -24,10 +24,12 @@ use crate::linalg::{dot, norm};
 use crate::model::Model;
 use crate::options::Range;
 use crate::options::{Response, SolverOptions};
+use crate::problem::epmc::OMEGA_UNIT;
 use crate::problem::gauges::Gauges;
 use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
 use crate::results::{Branch, ParameterData, Record, Special, SpecialKind};
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
+use crate::sensitivity::central_differences::central_differences;
 use crate::sensitivity::design::design;
 use crate::sensitivity::extremum_point::{extremum_gradient, extremum_matrix};
 use crate::sensitivity::fold_point::{Borders, FoldCondition, fold_gradient};
@@ -37,14 +39,6 @@ use crate::sensitivity::total_derivative::TotalDerivative;
 use crate::sensitivity::tracked::{Tracked, Unknowns, by_differences};
 use num_complex::Complex64;
 use std::sync::Arc;
-
-/// Change of ln ω that has the same weight as a change of the motions by their size.
-/// Kind: tuned; measured on: not recorded.
-const TRACKED_RESPONSE_OMEGA_UNIT: f64 = 0.05;
-
-/// Step of the differences along the branch over ω, over the width of the peak.
-/// Kind: tuned; measured on: not recorded.
-const BRANCH_STEP: f64 = 1e-4;
 
 /// Newton iterations by which the work of an estimate is bounded: those of a point that is solved by homotopy.
 /// Kind: cap.
@@ -147,7 +141,7 @@ impl<'a> TrackedResponse<'a> {
 
     fn frequency(&self, u: &[f64]) -> f64 {
         if self.is_free() {
-            self.omega * (TRACKED_RESPONSE_OMEGA_UNIT * (u[u.len() - 1] - 1.0)).exp()
+            self.omega * (OMEGA_UNIT * (u[u.len() - 1] - 1.0)).exp()
         } else {
             self.omega
         }
@@ -245,7 +239,7 @@ impl<'a> TrackedResponse<'a> {
         };
         values[..m].copy_from_slice(point.residual());
         let scale = point.scale();
-        let by_gauge = TRACKED_RESPONSE_OMEGA_UNIT * omega / adjoint.amplitude;
+        let by_gauge = OMEGA_UNIT * omega / adjoint.amplitude;
         if self.is_free() {
             values[m] = adjoint.by_omega * by_gauge;
         }
@@ -259,7 +253,7 @@ impl<'a> TrackedResponse<'a> {
             let (row, curvature) = peak_row(point, own, omega, &adjoint)?;
             self.last.curvature = curvature;
             self.fill_frequency((&by_omega, &row), omega, unit, by_gauge);
-            self.last.gradient[m] = adjoint.by_omega * TRACKED_RESPONSE_OMEGA_UNIT * omega;
+            self.last.gradient[m] = adjoint.by_omega * OMEGA_UNIT * omega;
         }
         let slope = self.by_parameter((model, condensed), p, &adjoint)?;
         self.last.gradient[values.len()] = slope;
@@ -306,7 +300,7 @@ impl<'a> TrackedResponse<'a> {
         for (to, from) in self.last.gradient.iter_mut().zip(&by_motion) {
             *to = self.length * from;
         }
-        self.last.gradient[m] = partial.by_omega * TRACKED_RESPONSE_OMEGA_UNIT * omega;
+        self.last.gradient[m] = partial.by_omega * OMEGA_UNIT * omega;
         self.last.gradient[n] = self.by_parameter(models, p, &partial)?;
         // The adjoint of motions, frequency and condition together.
         let mut system = Lu::new(n, 1)?;
@@ -350,13 +344,13 @@ impl<'a> TrackedResponse<'a> {
             return Ok(scale);
         }
         self.fill_motions(point.jacobian());
-        let row = extremum_gradient(point, (own, omega, length), &at, TRACKED_RESPONSE_OMEGA_UNIT * omega)?;
+        let row = extremum_gradient(point, (own, omega, length), &at, OMEGA_UNIT * omega)?;
         self.fill_frequency((&by_omega, &row), omega, unit, 1.0);
         self.last.amplitude = length * amplitude.norm();
         for (to, from) in self.last.gradient.iter_mut().zip(&by_motion) {
             *to = self.length * from;
         }
-        self.last.gradient[m] = partial.by_omega * TRACKED_RESPONSE_OMEGA_UNIT * omega;
+        self.last.gradient[m] = partial.by_omega * OMEGA_UNIT * omega;
         self.last.gradient[n] = self.by_parameter((model, condensed), p, &partial)?;
         // The amplitude does not change with the frequency there, so that its derivative is that at a fixed one.
         self.last.d_amplitude = match point.adjoint(own, omega)? {
@@ -373,7 +367,7 @@ impl<'a> TrackedResponse<'a> {
         derivatives: (&[f64], &[f64], f64),
         omega: f64,
     ) -> Result<FoldCondition> {
-        let matrix = extremum_matrix(point.jacobian(), derivatives, TRACKED_RESPONSE_OMEGA_UNIT * omega)?;
+        let matrix = extremum_matrix(point.jacobian(), derivatives, OMEGA_UNIT * omega)?;
         let borders = match self.borders.take() {
             Some(borders) => borders,
             None => Borders::near(&matrix, derivatives.1.len() + 1, self.interrupt)?,
@@ -425,13 +419,13 @@ impl<'a> TrackedResponse<'a> {
     fn fill_frequency(&mut self, (column, row): (&[f64], &[f64]), omega: f64, unit: f64, factor: f64) {
         let (m, n) = (self.motions(), self.unknowns.len());
         for (x, r) in self.unknowns.matrix[m * n..m * n + m].iter_mut().zip(column) {
-            *x = TRACKED_RESPONSE_OMEGA_UNIT * omega * r / unit;
+            *x = OMEGA_UNIT * omega * r / unit;
         }
         for (k, x) in row[..m].iter().enumerate() {
             // The unknowns are in another unit than those of the condensed model.
             self.unknowns.matrix[k * n + m] = x * unit * factor;
         }
-        self.unknowns.matrix[m * n + m] = row[m] * TRACKED_RESPONSE_OMEGA_UNIT * omega * factor;
+        self.unknowns.matrix[m * n + m] = row[m] * OMEGA_UNIT * omega * factor;
     }
 
     /// Derivative by the parameter of the result to which an adjoint motion belongs.
@@ -578,18 +572,14 @@ pub(crate) fn peak_row(
     let speed = norm(&tangent);
     let width = if speed > 0.0 { norm(u) / speed } else { omega };
     let mut row = try_vec(u.len() + 1, 0.0, CONTEXT)?;
-    // The errors of two steps are even in the step.
-    for (step, weight) in [(BRANCH_STEP, 4.0 / 3.0), (2.0 * BRANCH_STEP, -1.0 / 3.0)] {
-        let step = step * width;
-        for sign in [1.0, -1.0] {
-            let mut moved = try_copy(u, CONTEXT)?;
-            for (y, t) in moved.iter_mut().zip(&tangent) {
-                *y += sign * step * t;
-            }
-            let gradient = point.gradient(&moved, omega + sign * step, &adjoint.lambda)?;
-            for (x, g) in row.iter_mut().zip(&gradient) {
-                *x += sign * weight * g / (2.0 * step);
-            }
+    for (step, weight) in central_differences(width) {
+        let mut moved = try_copy(u, CONTEXT)?;
+        for (y, t) in moved.iter_mut().zip(&tangent) {
+            *y += step * t;
+        }
+        let gradient = point.gradient(&moved, omega + step, &adjoint.lambda)?;
+        for (x, g) in row.iter_mut().zip(&gradient) {
+            *x += weight * g;
         }
     }
     let curvature = dot(&row[..u.len()], &tangent) + row[u.len()];

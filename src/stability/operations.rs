@@ -2,22 +2,16 @@
 //! carried as a whole.
 
 use crate::linalg::sparse_storage::sparse::Csc;
+use crate::stability::slider_map::SLIDER_MAP_STEP;
+use crate::time_integration::DEGREE;
 
 /// Operations of the eigenvalues of a complex matrix of order 1 (Golub & Van Loan, Matrix Computations, 2013, §7.5: 25 n³
 /// complex ones).
-/// Kind: tuned; measured on: not recorded.
+/// Kind: fixed.
 const OF_EIGENVALUES: f64 = 100.0;
 
-/// Terms of the series of a step.
-/// Kind: tuned; measured on: not recorded.
-const TERMS: f64 = 24.0;
-
-/// Rate of the fastest motion times the length of a step.
-/// Kind: tuned; measured on: not recorded.
-const OPERATIONS_STEP: f64 = 2.0;
-
 /// Columns that are carried: those of shooting and those of the perturbations.
-/// Kind: tuned; measured on: not recorded.
+/// Kind: fixed.
 const TWICE: f64 = 2.0;
 
 /// Sizes of a structure that determine the operations of its perturbations.
@@ -38,8 +32,8 @@ impl Extent {
     /// Number of operations for the multipliers of all blocks.
     pub fn operations(&self) -> f64 {
         let states = 2.0 * self.order + self.sliders;
-        let steps = 1.0 + self.fastest / OPERATIONS_STEP;
-        let carried = TWICE * TERMS * 2.0 * self.entries * states * steps;
+        let steps = 1.0 + self.fastest / SLIDER_MAP_STEP;
+        let carried = TWICE * DEGREE as f64 * 2.0 * self.entries * states * steps;
         self.blocks * (carried + OF_EIGENVALUES * states.powi(3))
     }
 }

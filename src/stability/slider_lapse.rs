@@ -13,7 +13,7 @@ use crate::interrupt::Phase;
 use crate::stability::slider_motion::{Change, Path, SliderMotion, SliderState};
 use crate::stability::slider_step::{Lapse, SLIDER_STEP_TERMS};
 use crate::stability::slipping::Slipping;
-use crate::time_integration::{DEGREE, first_fall};
+use crate::time_integration::{DEGREE, GRAZING_SPEED, first_fall};
 
 const CONTEXT: &str = "the motion on modes";
 
@@ -28,10 +28,6 @@ const SLIDER_LAPSE_AT_ONCE: usize = 20;
 /// Steps of a lapse before the integration stops with an error.
 /// Kind: cap.
 const SLIDER_LAPSE_MOST_STEPS: usize = 2_000_000;
-
-/// Speed of a slider that begins to move, relative to its play times ω, below which the event is touched rather than passed.
-/// Kind: tuned; measured on: not recorded.
-const SLIDER_LAPSE_GRAZING: f64 = 3e-6;
 
 /// Rounding of a slider's place at the begin of a lapse, relative to the motion.
 /// Kind: rounding.
@@ -208,7 +204,7 @@ impl<'m, 'a> Lapse<'m, 'a> {
                 if theta > 0.0 {
                     speed = rate;
                 }
-                if (rate * self.sign[e]).abs() <= SLIDER_LAPSE_GRAZING * self.motion.omega * self.motion.play[e] {
+                if (rate * self.sign[e]).abs() <= GRAZING_SPEED * self.motion.omega * self.motion.play[e] {
                     path.grazing.get_or_insert((e, Grazing::SlipLimit));
                 }
             } else {

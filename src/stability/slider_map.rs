@@ -22,7 +22,7 @@ const CONTEXT: &str = "the perturbations on modes";
 
 /// Rate of the fastest motion times the length of one series.
 /// Kind: tuned; measured on: not recorded.
-const SLIDER_MAP_STEP: f64 = 2.0;
+pub(super) const SLIDER_MAP_STEP: f64 = 2.0;
 
 /// Share of the largest term at which a series is cut off.
 /// Kind: rounding.

@@ -5,6 +5,7 @@
 //! share the matrices of the structure, and the bases of large ones.
 
 use crate::condense::Condensed;
+use crate::condense::on_a_basis::wave_reduction::EXACT_UP_TO;
 use crate::error::{Error, Result, Status, fail, try_push, try_vec};
 use crate::hooks::{Hooks, Progress};
 use crate::interrupt::{Interrupt, Phase};
@@ -23,16 +24,12 @@ use std::time::Duration;
 
 const CONTEXT: &str = "the designs";
 
-/// Degrees of freedom above which a basis may serve all designs.
-/// Kind: tuned; measured on: not recorded.
-const MAY_HAVE_BASIS: usize = 100;
-
 /// Time between two looks at the caller's flag while other threads work.
 /// Kind: block.
 const PAUSE: Duration = Duration::from_millis(2);
 
 /// Checks of a design between two of the caller's hooks.
-/// Kind: tuned; measured on: not recorded.
+/// Kind: block.
 const BATCH_BETWEEN_CHECKS: usize = 16;
 
 /// A function that runs the work of a thread in the surroundings that the caller wants for it. It returns `false` if
@@ -277,7 +274,7 @@ pub fn batch_within(
         batch.branches.extend((0..designs).map(|_| None));
     }
     let base = model.separate_clone()?;
-    if base.structure().ndof() > MAY_HAVE_BASIS && parameters.iter().all(Parameter::keeps_structure) {
+    if base.structure().ndof() > EXACT_UP_TO && parameters.iter().all(Parameter::keeps_structure) {
         // The basis of the matrices serves all designs. An error is that of each design.
         let sweep = (options.omega_start, options.omega_stop);
         if let Err(e) = Condensed::new(&base, solver, sweep, &interrupt)

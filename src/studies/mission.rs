@@ -32,13 +32,10 @@ const MISSION_PHASE: f64 = 0.15;
 /// Kind: tuned; measured on: the oscillator above.
 const MISSION_NEAR: f64 = 12.0;
 
-/// Rate over the square of the bandwidth below which a crossing is steady. Chosen: an amplitude lags by about this share.
+/// Share by which an amplitude may differ from the steady one. A dwell is settled below it; a crossing, whose rate over the square of the
+/// bandwidth is about the share by which its amplitude lags, is steady below it. Chosen.
 /// Kind: tuned; measured on: nothing, it is chosen.
-const MISSION_SLOW: f64 = 1e-4;
-
-/// Difference from the steady amplitude, relative, below which a dwell is settled. Chosen, as the lag above.
-/// Kind: tuned; measured on: nothing, it is chosen.
-const MISSION_SETTLED: f64 = 1e-4;
+const MISSION_STEADY: f64 = 1e-4;
 
 /// Most steps of a mission.
 /// Kind: cap; some minutes.
@@ -288,11 +285,11 @@ fn longest_step((omega, rate): (f64, f64), at: &Oscillator, q: Complex64) -> f64
     let distance = (omega - natural).abs();
     let quick = rate.abs().sqrt();
     let mut step = MISSION_STEP * distance.max(width) / rate.abs();
-    if quick * quick > MISSION_SLOW * width * width && distance < MISSION_NEAR * (quick + width) {
+    if quick * quick > MISSION_STEADY * width * width && distance < MISSION_NEAR * (quick + width) {
         step = step.min(MISSION_PHASE / quick.max(width));
     }
     let target = at.force / at.stiffness(omega);
-    if (q - target).norm() > MISSION_SETTLED * target.norm() {
+    if (q - target).norm() > MISSION_STEADY * target.norm() {
         // An amplitude that has not settled changes frequency and damping.
         step = step.min(MISSION_PHASE.max(MISSION_STEP * distance / width.max(f64::MIN_POSITIVE)) / width);
     }

@@ -35,7 +35,7 @@ const SIMULTANEOUS: f64 = 1e-13;
 /// Speed of a slider that begins to move, relative to its stretch times ω, or of a landing, relative to the largest
 /// velocity, below which the event is touched rather than passed.
 /// Kind: tuned; measured on: not recorded.
-const GRAZING_SPEED: f64 = 3e-6;
+pub(crate) const GRAZING_SPEED: f64 = 3e-6;
 
 /// State of the structure: displacements, velocities and stretches of the sliders' springs.
 #[derive(Clone, Debug)]

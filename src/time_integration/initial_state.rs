@@ -13,7 +13,7 @@ use num_complex::Complex64;
 /// is not more than `INITIAL_STATE_POINTS` a period; then as few as a quarter of them. Chosen: the largest motion between times is
 /// missed by 5e-6 of it.
 /// Kind: tuned; measured on: nothing, it is chosen.
-const INITIAL_STATE_POINTS_PER_WAVE: usize = 64;
+pub(crate) const SLIDER_POINTS_PER_WAVE: usize = 64;
 const INITIAL_STATE_POINTS: usize = 1024;
 
 const CONTEXT: &str = "the start of the motion in time";
@@ -61,7 +61,7 @@ fn place_sliders(model: &Model, system: &System<'_>, sector: &[Complex64], state
         return Ok(());
     }
     let set = HarmonicSet::all(count - 1)?;
-    let fine = INITIAL_STATE_POINTS_PER_WAVE * count;
+    let fine = SLIDER_POINTS_PER_WAVE * count;
     let points = fine.min(INITIAL_STATE_POINTS.max(fine / 4));
     let mut transform = Transform::new(&set, points, false)?;
     let times = transform.held();

@@ -26,9 +26,9 @@ pub use periodic_response::{TimeResponse, solve};
 
 // The variational equations of the room `stability`.
 pub(crate) use event_law::Element;
-pub(crate) use event_loop::{EventLoop, Observers, State};
+pub(crate) use event_loop::{EventLoop, GRAZING_SPEED, Observers, State};
 pub(crate) use harmonic_analysis::HarmonicAnalysis;
-pub(crate) use initial_state::{state_of, state_of_sector};
+pub(crate) use initial_state::{SLIDER_POINTS_PER_WAVE, state_of, state_of_sector};
 pub(crate) use periodic_response::solve_disturbed;
 pub(crate) use perturbation_basis::PerturbationBasis;
 pub(crate) use sensitivity::Sensitivity;

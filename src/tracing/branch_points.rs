@@ -5,6 +5,7 @@
 //! (Allgower & Georg, Introduction to Numerical Continuation Methods, 2003, §8.1, doi:10.1137/1.9780898719154). The sign
 //! halves the arc across such a point.
 
+use crate::continuation::arc_length::ALONG;
 use crate::continuation::special_points::Locator;
 use crate::continuation::{Metric, Point, PointAt};
 use crate::error::{Result, try_copy};
@@ -16,10 +17,6 @@ use crate::tracing::course::BranchTracer;
 /// Halvings of the arc across a branch point.
 /// Kind: cap.
 const BRANCH_POINTS_HALVINGS: usize = 26;
-
-/// Least cosine between the directions at both ends of the arc: across a corner the sign may change, too.
-/// Kind: tuned; measured on: not recorded.
-const BRANCH_POINTS_SMOOTH: f64 = 0.9;
 
 /// Locates and records the branch point between two neighbours of the curve, where the analysis seeks it.
 pub(super) fn find_branch_point(
@@ -49,7 +46,8 @@ pub(super) fn find_branch_point(
     let [a, b] = &ends[..] else { return Ok(()) };
     let metric = Metric::along(norm(b.unknowns()), &tracer.course.settings);
     let cosine = metric.dot(&a.tangent, &b.tangent) / (metric.norm(&a.tangent) * metric.norm(&b.tangent));
-    if a.positive == b.positive || cosine < BRANCH_POINTS_SMOOTH {
+    // Across a corner the sign may change, too.
+    if a.positive == b.positive || cosine < ALONG {
         return Ok(());
     }
     let mut locator = Locator::new(a.unknowns().len(), tracer.course.settings)?;

@@ -5,7 +5,8 @@
 //! have. It passes the symmetric branch where the motions in these directions change their sign: beyond lies its mirror image.
 
 use crate::continuation::arc_cubic::Cubic;
-use crate::continuation::{Metric, Point, PointAt, Settings};
+use crate::continuation::arc_length::STRAIGHT;
+use crate::continuation::{Metric, ONE_SOLUTION, Point, PointAt, Settings};
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::harmonics::discretised::Traceable;
@@ -18,15 +19,9 @@ const CONTEXT: &str = "the end of a branch";
 /// Kind: block.
 const INNER_ENDS_LEAST: usize = 4;
 
-/// Distance of the first point to an arc, over its chord, at which the curve closes there, and least cosine between their
-/// directions.
+/// Distance of the first point to an arc, over its chord, at which the curve closes there.
 /// Kind: tuned; measured on: not recorded.
 const INNER_ENDS_CLOSE: f64 = 0.1;
-const INNER_ENDS_ALONG: f64 = 0.5;
-
-/// Share of a motion in the directions of its own that a curve does not have where it has run onto that branch.
-/// Kind: tuned; measured on: not recorded.
-const INNER_ENDS_MERGED: f64 = 1e-6;
 
 /// Corrections of the place on an arc.
 /// Kind: cap.
@@ -101,7 +96,7 @@ impl InnerEnds {
                 let at = last.parameter() + share * (point.parameter() - last.parameter());
                 return Ok(Some(InnerEnd::Merged(at)));
             }
-            if after.sqrt() <= INNER_ENDS_MERGED * norm(point.unknowns()) {
+            if after.sqrt() <= ONE_SOLUTION * norm(point.unknowns()) {
                 // Up to the branch the square of that part falls in proportion to the parameter.
                 let slope = 2.0 * dropped.dot(set, last.unknowns(), &last.tangent[..n]);
                 let at = last.parameter() - before * last.tangent[n] / slope;
@@ -140,7 +135,7 @@ fn passes(first: &Point, (a, b): (&Point, &Point), metric: Metric, n: usize) -> 
     let length = square.sqrt();
     let along = metric.dot(&first.tangent, &chord) / (metric.norm(&first.tangent) * length);
     let share = metric.dot(&way, &chord) / square;
-    if !(along >= INNER_ENDS_ALONG && share > 0.0 && share <= 1.0) {
+    if !(along >= STRAIGHT && share > 0.0 && share <= 1.0) {
         return Ok(false);
     }
     let cubic = Cubic::new(a, b, metric);

@@ -5,6 +5,7 @@
 //! short as those of a curve, about, and from outside they lead at most half way to it.
 
 use crate::continuation::Continuation;
+use crate::continuation::arc_length::APPROACH;
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
@@ -18,10 +19,6 @@ const MOST_DEGREES: usize = 16;
 /// Change of the frequency in a step within a band, as a share of the range: about that of the largest step of a curve.
 /// Kind: tuned; measured on: not recorded.
 const RESONANCE_BANDS_SHARE: f64 = 0.05;
-
-/// Share of the way to a band that one step goes.
-/// Kind: tuned; measured on: not recorded.
-const RESONANCE_BANDS_APPROACH: f64 = 0.5;
 
 /// Bands of frequency in which the harmonics with forces may resonate.
 pub(crate) struct ResonanceBands {
@@ -83,7 +80,7 @@ impl ResonanceBands {
             _ => None,
         };
         let nearest = self.bands.iter().filter_map(distance).fold(f64::INFINITY, f64::min);
-        (RESONANCE_BANDS_APPROACH * nearest).max(self.within)
+        (APPROACH * nearest).max(self.within)
     }
 }
 

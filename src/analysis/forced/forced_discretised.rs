@@ -14,7 +14,7 @@ use crate::continuation::corrector::Outcome;
 use crate::continuation::corrector::deflated;
 use crate::continuation::corrector::null_direction::null_direction;
 use crate::continuation::resolve::resolve;
-use crate::continuation::{Metric, Point, PointAt, Settings};
+use crate::continuation::{Metric, ONE_SOLUTION, Point, PointAt, Settings};
 use crate::error::{Result, boxed, try_copy, try_extend, try_vec};
 use crate::harmonics::discretised::{Assessment, Discretised, Judged, LinearParts, Observed, Recorder};
 use crate::harmonics::estimate_spacing::share_of_highest;
@@ -36,10 +36,6 @@ use crate::problem::gauges::Seen;
 use crate::results::{Branch, Resolution, SpecialKind, Verdict};
 use crate::tracing::branch_recorder::{BranchRecorder, Ending};
 use num_complex::Complex64;
-
-/// Distance of two solutions that are one, over their size.
-/// Kind: tuned; measured on: not recorded.
-const KNOWN: f64 = 1e-6;
 
 /// The equations of a linear response. Their reference is the stuck structure, where that of the others is different
 /// and damping bounds the response of the stuck structure.
@@ -274,7 +270,7 @@ impl<'a> ForcedDiscretised<'a> {
         let u = found.unknowns();
         let is_one = |known: &Vec<f64>| {
             let gap = u.iter().zip(known).fold(0.0_f64, |gap, (u, k)| gap.hypot(u - k));
-            gap <= KNOWN * norm(known)
+            gap <= ONE_SOLUTION * norm(known)
         };
         let is_known = known.iter().any(is_one);
         Ok((!is_known).then_some(found))

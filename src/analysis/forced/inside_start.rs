@@ -10,7 +10,7 @@ use crate::analysis::forced::forced_discretised::ForcedDiscretised;
 use crate::analysis::forced::known_curve::lies_on;
 use crate::analysis::forced::phase_direction::phase_direction;
 use crate::analysis::forced::start_net::Net;
-use crate::continuation::{Metric, Point, Settings};
+use crate::continuation::{Metric, ONE_SOLUTION, Point, Settings};
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::harmonics::discretised::Discretised;
@@ -25,17 +25,13 @@ use std::sync::Arc;
 
 const CONTEXT: &str = "the start of a branch";
 
-/// Distances from the bifurcation, as shares of the motion, in the order in which they are tried.
+/// Distances from a bifurcation or a branch point, as shares of the motion, in the order in which they are tried.
 /// Kind: tuned; measured on: not recorded.
-const DISTANCES: [f64; 6] = [1e-2, 3e-3, 3e-2, 1e-3, 1e-1, 3e-4];
+pub(crate) const DISTANCES: [f64; 6] = [1e-2, 3e-3, 3e-2, 1e-3, 1e-1, 3e-4];
 
 /// Share of the motion in harmonics that it does not have.
 /// Kind: rounding.
 const ABSENT: f64 = 1e-8;
-
-/// Share of a point in harmonics that the branch does not have below which it lies on the branch itself.
-/// Kind: rounding.
-const FELL_BACK: f64 = 1e-6;
 
 /// Eigenvalue over the smallest one among the harmonics that a motion does not have, below which another symmetry breaks.
 /// Kind: tuned; measured on: not recorded.
@@ -171,7 +167,7 @@ impl Inside<'_> {
                 continue;
             };
             let u = point.unknowns();
-            let fell_back = |dropped: Dropped| dropped.dot(set, u, u).sqrt() <= FELL_BACK * norm(u);
+            let fell_back = |dropped: Dropped| dropped.dot(set, u, u).sqrt() <= ONE_SOLUTION * norm(u);
             if !is_inside(&point) || dropped.is_some_and(fell_back) {
                 continue;
             }

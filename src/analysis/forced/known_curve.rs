@@ -1,7 +1,7 @@
 //! Points of curves that are known: whether a new point lies on a branch that was followed already.
 
 use crate::condense::Condensed;
-use crate::continuation::Point;
+use crate::continuation::{ONE_SOLUTION, Point};
 use crate::error::{Result, fail, try_push};
 use crate::fourier::HarmonicSet;
 use crate::harmonics::discretised::Discretised;
@@ -12,10 +12,6 @@ use crate::results::Branch;
 use crate::results::stored::mode_branch::ModeField;
 use num_complex::Complex64;
 use std::sync::Arc;
-
-/// Distance of two solutions that are one, over their size.
-/// Kind: tuned; measured on: not recorded.
-const ONE: f64 = 1e-6;
 
 /// Most halvings of the line between two points of a branch.
 /// Kind: cap.
@@ -171,7 +167,7 @@ impl Segment<'_> {
     fn is_one(&self, found: &Point) -> bool {
         let motion = |point: &'_ Point| point.unknowns().len() - self.others;
         let (a, b) = (&found.v[..motion(found)], &self.point.v[..motion(self.point)]);
-        let bound = ONE * norm(b);
+        let bound = ONE_SOLUTION * norm(b);
         let m = self.set.packed_len().max(1);
         // A mode is autonomous: half of its period later it is the same, whatever the model.
         let signs: &[f64] = if self.others > 0 { &[1.0, -1.0] } else { &[1.0] };

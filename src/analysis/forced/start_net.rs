@@ -27,9 +27,9 @@ pub(crate) struct Net<'n> {
 const START_NET_AMPLITUDES: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
 const PHASES: usize = 8;
 
-/// Share of a subharmonic motion outside the multiples of its order.
+/// Share of a motion in the harmonics that another curve does not have, below which it lies on that curve.
 /// Kind: tuned; measured on: not recorded.
-const SUBHARMONIC: f64 = 1e-3;
+pub(crate) const OWN_SHARE: f64 = 1e-3;
 
 impl Net<'_> {
     /// The first solution at the frequency of the start that is subharmonic and lies on no known branch. The curve of
@@ -67,7 +67,7 @@ impl Net<'_> {
                 let Some(point) = response.solve_at(&near, interrupt)? else {
                     continue;
                 };
-                if subharmonic_share(set, point.unknowns(), self.order) < SUBHARMONIC {
+                if subharmonic_share(set, point.unknowns(), self.order) < OWN_SHARE {
                     continue;
                 }
                 let mut is_known = false;

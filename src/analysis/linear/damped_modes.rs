@@ -11,6 +11,7 @@ use crate::model::Model;
 use crate::model::matrices::speed::Speed;
 use crate::model::matrices::structure::MatrixKind;
 use crate::model::matrices::wave::Wave;
+use crate::model::natural_modes::damped_mode::SHIFT_OFFSET;
 use crate::model::natural_modes::linear_modes::ContactState;
 use crate::model::natural_modes::quadratic_problem::Quadratic;
 use num_complex::Complex64;
@@ -30,10 +31,6 @@ const UNTOUCHED: f64 = 1e-10;
 /// Difference of two matrices, relative to their largest entry, that is rounding.
 /// Kind: rounding.
 const EQUAL_MATRICES: f64 = 4e-15;
-
-/// Relative distance of the shift from an eigenvalue.
-/// Kind: tuned; measured on: not recorded.
-const DAMPED_MODES_OFFSET: f64 = 1e-8;
 
 /// Damping ratio below which a mode grows; above it is rounding.
 /// Kind: rounding.
@@ -232,7 +229,7 @@ fn direction(
     (eigenvalue, x): (Complex64, &[Complex64]),
     interrupt: &Interrupt<'_>,
 ) -> Result<i64> {
-    let shifted = problem.matrix(eigenvalue * (1.0 + DAMPED_MODES_OFFSET))?;
+    let shifted = problem.matrix(eigenvalue * (1.0 + SHIFT_OFFSET))?;
     let mut factor = Factor::new(&shifted, 1)?;
     factor.factor(&shifted, interrupt)?;
     // yᴴ A = 0 is Aᵀ conj(y) = 0.

@@ -8,7 +8,7 @@
 //! of that period. With the fundamental turned back to its phase, harmonic h changes its sign by the parity of h/n, rounded
 //! (Kerschen et al. 2009, doi:10.1016/j.ymssp.2008.04.002, shows both curves, S33+ and S33−, that leave it).
 
-use crate::analysis::forced::inside_start::{Entered, Entry, dropped, null_vector};
+use crate::analysis::forced::inside_start::{DISTANCES, Entered, Entry, dropped, null_vector};
 use crate::analysis::forced::known_curve::lies_on;
 use crate::analysis::modes::mode_discretised::ModeDiscretised;
 use crate::condense::Condensed;
@@ -30,10 +30,6 @@ const CONTEXT: &str = "the start of a mode's further curve";
 /// Kind: fixed.
 const OTHERS: usize = 2;
 const OTHERS_AND_PARAMETER: usize = OTHERS + 1;
-
-/// Distances from a branch point, as shares of the motion, in the order in which they are tried.
-/// Kind: tuned; measured on: not recorded.
-const MODE_ENTRY_DISTANCES: [f64; 6] = [1e-2, 3e-3, 3e-2, 1e-3, 1e-1, 3e-4];
 
 /// Share of the motion at a branch point in harmonics that the curve through it does not have.
 /// Kind: tuned; measured on: not recorded.
@@ -156,7 +152,7 @@ fn beside(
     }
     let length = norm(&null[..n]);
     let (low, high) = (settings.start.min(settings.end), settings.start.max(settings.end));
-    for distance in MODE_ENTRY_DISTANCES {
+    for distance in DISTANCES {
         let mut near = at.try_clone()?;
         near.tangent.copy_from_slice(&null);
         for (v, t) in near.v.iter_mut().zip(&null) {

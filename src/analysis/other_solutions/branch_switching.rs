@@ -8,6 +8,7 @@
 
 use crate::analysis::forced::forced_curve::{forced_from_inside, forced_harmonics, misses_fundamental};
 use crate::analysis::forced::inside_start::Inside;
+use crate::analysis::forced::start_net::OWN_SHARE;
 use crate::error::{Result, Status, try_push, try_vec};
 use crate::fourier::gcd;
 use crate::hooks::{Hooks, LogLevel};
@@ -24,10 +25,6 @@ const CONTEXT: &str = "the branches that branch off";
 /// Distance of a bifurcation to the end of a known child, over the range, at which that child ends there.
 /// Kind: tuned; measured on: not recorded.
 const BRANCH_SWITCHING_SAME: f64 = 2e-2;
-
-/// Share of the harmonics that a branch does not have in a motion that is one of it.
-/// Kind: tuned; measured on: not recorded.
-const AT_START: f64 = 1e-3;
 
 /// Place of a branch in the tree.
 pub(crate) struct Place<'p> {
@@ -343,5 +340,5 @@ fn is_without(branch: &Branch, point: usize, dropped: Dropped, interrupt: &Inter
             own = own.hypot(size);
         }
     }
-    Ok(own <= AT_START * all)
+    Ok(own <= OWN_SHARE * all)
 }

@@ -10,6 +10,7 @@ use crate::analysis::forced::inside_start::Inside;
 use crate::analysis::modes::nonlinear_mode::nonlinear_mode;
 use crate::analysis::other_solutions::branch_switching::{Found, Tree};
 use crate::analysis::synthesis::{ForceExtremum, Motions, with_motions};
+use crate::continuation::ONE_SOLUTION;
 use crate::error::{Error, Result, Status, try_push};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::Interrupt;
@@ -40,10 +41,6 @@ const HARMONICS: usize = 5;
 /// Most points of such a mode.
 /// Kind: cap.
 const DETACHED_CURVES_MOST_POINTS: usize = 2_000;
-
-/// Distance of two motions that are one at an end of the range, over their size, where no tolerance is given.
-/// Kind: tuned; measured on: not recorded.
-const ONE_END: f64 = 1e-6;
 
 impl Tree<'_> {
     /// Adds the detached curves beside a branch, with their children, down to `depth`.
@@ -221,7 +218,7 @@ impl Tree<'_> {
     pub fn shares_an_end(&self, a: &Branch, b: &Branch, interrupt: &Interrupt<'_>) -> Result<bool> {
         let (low, high) = self.ends();
         let ends = |branch: &Branch| [0, branch.points().saturating_sub(1)];
-        let bound = ONE_END.max(2.0 * self.solver.tolerance);
+        let bound = ONE_SOLUTION.max(2.0 * self.solver.tolerance);
         for i in ends(a) {
             let Some(omega) = a.omega().get(i).copied() else {
                 continue;

@@ -9,6 +9,7 @@ use crate::analysis::other_solutions::branch_switching::{Found, Tree};
 use crate::analysis::other_solutions::detached_curves::tolerate;
 use crate::analysis::over_parameter::parameter_range::{Follow, ParameterRange};
 use crate::analysis::over_parameter::parameter_response::follow_from;
+use crate::continuation::ONE_SOLUTION;
 use crate::error::{Result, Status, try_push};
 use crate::hooks::{Hooks, LogLevel};
 use crate::options::SolverOptions;
@@ -30,10 +31,6 @@ const OVER_FORCE_MOST_POINTS: usize = 400;
 /// Unknowns of a point above which none is followed: its equations are dense, and are condensed at each evaluation.
 /// Kind: cap.
 const OVER_FORCE_MOST_UNKNOWNS: usize = 200;
-
-/// Distance in frequency and amplitude, relative, of a solution over the force that is a peak of a known curve.
-/// Kind: tuned; measured on: not recorded.
-const OVER_FORCE_SAME: f64 = 1e-6;
 
 /// A solution at the nominal force, with the nearest factors of the force at which its curve is born and merges.
 struct Crossing {
@@ -68,7 +65,7 @@ impl Tree<'_> {
                 match self.crossings(branch, (kind, point), ends, hooks) {
                     Ok(found) => {
                         // The curve begins at a known solution.
-                        let is_first = |c: &Crossing| (c.omega - point.omega).abs() <= OVER_FORCE_SAME * point.omega;
+                        let is_first = |c: &Crossing| (c.omega - point.omega).abs() <= ONE_SOLUTION * point.omega;
                         for crossing in found.iter().skip_while(|c| is_first(c)) {
                             self.searched.crossings += 1;
                             self.add_crossing(branch, crossing, depth, hooks)?;
@@ -143,7 +140,7 @@ impl Tree<'_> {
         depth: usize,
         hooks: &mut Hooks<'_>,
     ) -> Result<()> {
-        let bound = OVER_FORCE_SAME.max(2.0 * self.solver.tolerance);
+        let bound = ONE_SOLUTION.max(2.0 * self.solver.tolerance);
         let is_near = |a: f64, b: f64| (a - b).abs() <= bound * b.abs();
         for child in branch.children_mut() {
             let mut peaks = child.peaks().iter();

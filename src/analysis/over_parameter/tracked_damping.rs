@@ -28,7 +28,7 @@ use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
 use crate::results::stored::mode_branch::ModePoint;
 use crate::results::{Branch, ParameterData, Record, Special, SpecialKind};
 use crate::sensitivity::tracked::{Tracked, Unknowns, by_differences};
-use crate::sensitivity::{ModePointAdjoint, ModeQuantity, Parameter, TotalDerivative, design};
+use crate::sensitivity::{ModePointAdjoint, ModeQuantity, Parameter, TotalDerivative, central_differences, design};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -37,10 +37,6 @@ const CONTEXT: &str = "the parameter response";
 /// Change of log₁₀ of the amplitude that has the same weight as a change of the motions by their size.
 /// Kind: tuned; measured on: not recorded.
 const AMPLITUDE_UNIT: f64 = 0.1;
-
-/// Step of the differences along the mode, in log₁₀ of the amplitude.
-/// Kind: tuned; measured on: not recorded.
-const MODE_STEP: f64 = 1e-4;
 
 /// The largest damping ratio of a nonlinear mode over a parameter.
 pub(crate) struct TrackedDamping<'a> {
@@ -282,22 +278,17 @@ fn maximum_row(
     let mut matrix = try_vec(x * x, 0.0, CONTEXT)?;
     let mut active = try_vec(x, true, CONTEXT)?;
     let width = (norm(own) / norm(tangent)).min(1.0);
-    // The errors of two steps are even in the step.
-    for (step, weight) in [(MODE_STEP, 4.0 / 3.0), (2.0 * MODE_STEP, -1.0 / 3.0)] {
-        let step = step * width;
-        for sign in [1.0, -1.0] {
-            let mut moved = try_copy(own, CONTEXT)?;
-            for (y, t) in moved.iter_mut().zip(tangent) {
-                *y += sign * step * t;
-            }
-            problem.evaluate(&moved, log10 + sign * step, &mut there)?;
-            problem.fill(&mut matrix, &mut active)?;
-            let factor = -sign * weight / (2.0 * step);
-            for (to, column) in row.iter_mut().zip(matrix.chunks_exact(x)) {
-                *to += factor * dot(column, lambda);
-            }
-            row[x] += factor * dot(&there.d_parameter, lambda);
+    for (step, weight) in central_differences(width) {
+        let mut moved = try_copy(own, CONTEXT)?;
+        for (y, t) in moved.iter_mut().zip(tangent) {
+            *y += step * t;
         }
+        problem.evaluate(&moved, log10 + step, &mut there)?;
+        problem.fill(&mut matrix, &mut active)?;
+        for (to, column) in row.iter_mut().zip(matrix.chunks_exact(x)) {
+            *to -= weight * dot(column, lambda);
+        }
+        row[x] -= weight * dot(&there.d_parameter, lambda);
     }
     Ok(row)
 }

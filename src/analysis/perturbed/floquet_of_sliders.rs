@@ -21,15 +21,11 @@ use crate::stability::{
     Closure, Counts, ModalRing, Orbit, RingForce, SliderMap, SliderMotion, SliderState, Sliders, classified, closures,
     orbit, scale_of_sliders,
 };
-use crate::time_integration::Number;
+use crate::time_integration::{Number, SLIDER_POINTS_PER_WAVE};
 use num_complex::Complex64;
 use std::f64::consts::{SQRT_2, TAU};
 
 const CONTEXT: &str = "the contacts on modes";
-
-/// Times per period of the highest harmonic at which sliders are dragged along with the motion of the point.
-/// Kind: tuned; measured on: not recorded.
-const SLIDERS_POINTS_PER_WAVE: usize = 64;
 
 /// Modes of the stuck structure for all nodal diameters, and the sliders.
 pub(crate) struct SliderModes {
@@ -352,7 +348,7 @@ fn state_of_motion(
         conjugate(&mut r, backward);
         try_push(&mut relative, r, CONTEXT)?;
     }
-    let times = SLIDERS_POINTS_PER_WAVE * harmonics.len();
+    let times = SLIDER_POINTS_PER_WAVE * harmonics.len();
     let mut motion = try_vec(times, 0.0, CONTEXT)?;
     for c in 0..ring.contacts {
         for s in 0..m {

@@ -1,5 +1,6 @@
 //! A stable motion and a saddle at one phase of the forces, and the side of the saddle on which the stable motion is after a kick.
 
+use crate::continuation::ONE_SOLUTION;
 use crate::error::{Result, Status, fail, try_copy, try_vec};
 use crate::hooks::Hooks;
 use crate::interrupt::Interrupt;
@@ -9,10 +10,6 @@ use crate::time_integration::{EventLoop, Observers, Sensitivity, State, SteadySe
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the smallest kick";
-
-/// Distance of two motions, relative to their size, up to which they are one.
-/// Kind: tuned; measured on: not recorded.
-const KICKED_SAME: f64 = 1e-6;
 
 /// Accuracy of shooting and of the last check, and of the many integrations before it where a law is smooth.
 /// Kind: rounding.
@@ -137,7 +134,7 @@ impl<'a> Kicked<'a> {
         let along: f64 = w[n..2 * n].iter().zip(&kick).map(|(w, v)| w * v).sum();
         let gap = distance(&lower, &saddle, omega);
         let size = distance(&saddle, &State::rest(&system)?, omega);
-        if gap.is_nan() || gap <= KICKED_SAME * size {
+        if gap.is_nan() || gap <= ONE_SOLUTION * size {
             return fail!(Argument, "point and saddle are one motion");
         }
         Ok(Self {

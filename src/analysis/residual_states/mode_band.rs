@@ -39,9 +39,9 @@ const MODE_BAND_ENOUGH: f64 = 1e-8;
 /// Kind: cap.
 const MODE_BAND_DOUBLINGS: usize = 5;
 
-/// Distance in log10 of the amplitude of the second end of a range of one point.
+/// Distance in log₁₀ of the amplitude of the second end of a range of one point.
 /// Kind: tuned; measured on: not recorded.
-const NEXT: f64 = 1e-3;
+pub(crate) const NEXT_AMPLITUDE: f64 = 1e-3;
 
 /// Shift of a place from the one that was given, over its limit, from which the limit has dragged it.
 /// Kind: rounding.
@@ -154,7 +154,7 @@ pub fn mode_band(
             .mode_data()
             .map_or(range.choice, |data| ModeChoice::Near(data.info.omega)),
         log10_start: log10,
-        log10_stop: log10 + NEXT,
+        log10_stop: log10 + NEXT_AMPLITUDE,
         at: &[],
         guess: None,
         ..*range

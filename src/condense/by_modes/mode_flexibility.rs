@@ -53,7 +53,7 @@ struct Direct {
 const DEVIATION: f64 = 1e-11;
 /// Largest deviation of sums over the error of the solution by factorisation.
 /// Kind: tuned; measured on: not recorded.
-const BEYOND_ITS_ERROR: f64 = 10.0;
+pub(crate) const BEYOND_ITS_ERROR: f64 = 10.0;
 
 /// Relative distance from an undamped resonance that moves no contact at which a motion is that at the resonance, but for rounding.
 /// Kind: rounding.

@@ -12,6 +12,7 @@
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::complex_products;
+use crate::linalg::dense::complex_products::LOOPS_UP_TO;
 use crate::linalg::dense::eigen::{self, Pairs};
 use crate::linalg::dot;
 use crate::linalg::exact_sums::quadratic::{self, ComplexSum, terms_of_moduli};
@@ -39,10 +40,6 @@ const STEP_AGAIN: f64 = 1e-7;
 /// Most such steps.
 /// Kind: cap.
 const MOST_STEPS: usize = 4;
-
-/// Order up to which real modes take complex products: blocked ones have no room on a small stack.
-/// Kind: tuned; measured on: not recorded.
-const COMPLEX_UP_TO: usize = 48;
 
 /// Share of entries of a matrix, inverse, above which products by blocks are quicker than by its entries.
 /// Kind: tuned; measured on: not recorded.
@@ -100,7 +97,7 @@ fn refine(stiffness: &Csc, mass: &[Complex64], pairs: &mut Pairs, interrupt: &In
     let Pairs { values, vectors } = pairs;
     let x = vectors.as_mut_slice();
     let real = |of: &[Complex64]| of.iter().all(|z| z.im == 0.0);
-    if n <= COMPLEX_UP_TO || !(real(mass) && real(&stiffness.values) && real(x)) {
+    if n <= LOOPS_UP_TO || !(real(mass) && real(&stiffness.values) && real(x)) {
         let matrices = [mass, &stiffness.values];
         let by = Products {
             plain: complex_products::multiply,
@@ -265,7 +262,7 @@ fn terms_of_all<T: Entry>(stiffness: &Csc, x: &[T], interrupt: &Interrupt<'_>) -
     let n = stiffness.rows;
     let sizes = moduli(&stiffness.values)?;
     let mut found = try_vec(n, 0.0, CONTEXT)?;
-    if n <= COMPLEX_UP_TO || MANY_ENTRIES * sizes.len() <= n * n {
+    if n <= LOOPS_UP_TO || MANY_ENTRIES * sizes.len() <= n * n {
         let mut size = try_vec(n, 0.0, CONTEXT)?;
         for (found, x) in found.iter_mut().zip(x.chunks_exact(n)) {
             interrupt.check_before(2 * sizes.len() as u64)?;

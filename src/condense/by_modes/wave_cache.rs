@@ -12,6 +12,7 @@ use crate::condense::on_a_basis::basis_outlook::are_all_modes_quicker;
 use crate::condense::{Condensed, FlexibilityWay, HarmonicBlock};
 use crate::error::{Result, Status, try_copy, try_push};
 use crate::interrupt::Interrupt;
+use crate::linalg::dense::complex_products::LOOPS_UP_TO;
 use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::few_motions::reduced_wave::MotionRow;
@@ -36,11 +37,6 @@ const ALL_OF_BASIS_UP_TO: usize = 1_200;
 const ALL_BESIDE_DEAR_FACTORS_UP_TO: usize = 2_000;
 
 const CONTEXT: &str = "the modes of the structure";
-
-/// Degrees of freedom from which sums over poles take less time than factorisations, and their search may take more of the stack than
-/// the small thread of a small model has.
-/// Kind: tuned; measured on: not recorded.
-const POLES_FROM: usize = 49;
 
 /// Modes or poles of a wave, or the reason why it has none.
 type Found = core::result::Result<Source, FlexibilityWay>;
@@ -133,7 +129,8 @@ impl WaveCache {
             }
             self.has_no_modes = true;
         }
-        if condensed.ndof() < POLES_FROM {
+        // The search for poles may take more of the stack than the small thread of a small model has.
+        if condensed.ndof() <= LOOPS_UP_TO {
             self.without_poles = Some(FlexibilityWay::Few);
         } else if !matches!(block.matrices.artificial, Artificial::None) {
             // Poles would follow the damping ratio of a nonlinear mode; directions of damping do not.

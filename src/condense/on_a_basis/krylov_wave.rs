@@ -15,6 +15,7 @@ use crate::linalg::sparse_storage::row_index::Row;
 use crate::linalg::sparse_storage::sparse::{Columns, Csc};
 use crate::linalg::sparse_storage::triangle::{Entry, Triangle};
 use crate::model::few_motions::reduced_wave::{Basis, ReducedPencil, ReducedWave, Remainder, WaveDamping};
+use crate::model::few_motions::stuck_shapes::FREE_SHIFT;
 use crate::model::matrices::wave_matrix::WaveMatrix;
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -34,10 +35,6 @@ const PROBES: usize = 3;
 /// so small that the basis finds the modes near the sweep first.
 /// Kind: tuned; measured on: not recorded.
 const SHIFT: f64 = 0.01;
-
-/// The same over the typical stiffness per mass, for a wave that is needed at rest only.
-/// Kind: tuned; measured on: not recorded.
-const KRYLOV_WAVE_SMALL: f64 = 1e-7;
 
 /// Factor between shifts of an indefinite stiffness, and the number that are tried.
 /// Kind: tuned; measured on: not recorded.
@@ -298,7 +295,7 @@ fn started<T: Entry>(
             return Ok(None);
         }
         if shift <= 0.0 {
-            shift = KRYLOV_WAVE_SMALL * trace(&stiffness).abs() / heavy;
+            shift = FREE_SHIFT * trace(&stiffness).abs() / heavy;
         }
         let a = Triangle::<T>::sum(&stiffness, (shift, &mass), interrupt)?;
         let operators = Operators::<T>::new([stiffness, mass], interrupt)?;

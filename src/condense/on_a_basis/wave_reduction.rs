@@ -29,7 +29,7 @@ const CONTEXT: &str = "the reduced structure";
 
 /// Degrees of freedom up to which results have all digits: a basis errs by its certificate.
 /// Kind: tuned; measured on: not recorded.
-const EXACT_UP_TO: usize = 100;
+pub(crate) const EXACT_UP_TO: usize = 100;
 
 /// Certificate of a basis in place of all modes: the error that is allowed to a sum over these.
 /// Kind: rounding.

@@ -27,9 +27,9 @@ const CONTEXT: &str = "the modes of the stuck structure";
 /// Kind: rounding.
 const STUCK_SHAPES_DEPENDENT: f64 = 1e-6;
 
-/// Shift of the static shapes of a structure that no stiffness holds, relative to its stiffness per mass.
+/// Shift of a structure that no stiffness holds, relative to its stiffness per mass, where its motion at rest is wanted.
 /// Kind: tuned; measured on: not recorded.
-const STUCK_SHAPES_SHIFT: f64 = 1e-7;
+pub(crate) const FREE_SHIFT: f64 = 1e-7;
 
 /// Shapes of one nodal diameter, column after column.
 pub(crate) struct StuckShapes {
@@ -202,7 +202,7 @@ fn stiffness_factors(k: &Csc, m: &Csc, interrupt: &Interrupt<'_>) -> Result<Inve
     let shift = if resists_all_motion(k, interrupt)? {
         0.0
     } else {
-        STUCK_SHAPES_SHIFT * diagonal(k) / diagonal(m).max(f64::MIN_POSITIVE)
+        FREE_SHIFT * diagonal(k) / diagonal(m).max(f64::MIN_POSITIVE)
     };
     Inverse::new(k, (shift, m), interrupt)
 }

@@ -13,6 +13,7 @@
 use crate::contact::Contact;
 use crate::error::{Result, check_memory, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::dense::eigen::EIGEN_SMALL_UP_TO;
 use crate::linalg::dense::fallible_matrix::{filled, zeros};
 use crate::linalg::dense::hermitian;
 use crate::linalg::factors::shifted_inverse::Inverse;
@@ -35,10 +36,6 @@ const CONTACT_MODES_DEPENDENT: f64 = 1e-6;
 /// Iterations of the eigensolver, far above what converging cases need.
 /// Kind: cap.
 const CONTACT_MODES_ITERATIONS: usize = 100_000;
-
-/// Shapes up to which the eigensolver of nalgebra is so quick that nobody needs to interrupt it.
-/// Kind: tuned; measured on: not recorded.
-const CONTACT_MODES_SMALL: usize = 100;
 
 /// A force of one harmonic on all independent degrees of freedom.
 pub(crate) struct ForceOfWave {
@@ -306,7 +303,7 @@ fn eigenpairs(
     interrupt: &Interrupt<'_>,
 ) -> Result<(Vec<f64>, DMatrix<Complex64>)> {
     let count = matrix.nrows();
-    if count > CONTACT_MODES_SMALL {
+    if count > EIGEN_SMALL_UP_TO {
         let (values, mut vectors) = hermitian::eigen(matrix.as_mut_slice(), count, interrupt)?;
         if is_real {
             // Reflections of real columns are real to the last bit: no phase is cut off.
@@ -338,7 +335,7 @@ mod tests {
     /// A cut-off imaginary part would be a phase that is lost.
     #[test]
     fn vectors_of_a_large_real_matrix_are_real() {
-        let n = CONTACT_MODES_SMALL + 20;
+        let n = EIGEN_SMALL_UP_TO + 20;
         let entry = |i: usize, j: usize| {
             let own = if i == j { 3.0 * (i + 1) as f64 } else { 0.0 };
             Complex64::from(own + (((i * j) % 17 + i + j) as f64 * 0.7).sin())

@@ -30,10 +30,10 @@ pub struct DampedMode {
     pub shape: Vec<Complex64>,
 }
 
-/// Relative distance of the shift from the frequency. Each step gains the digits of this distance; with a shift at
-/// the frequency itself the factors would be singular.
+/// Relative distance of a shift from the frequency, or from another eigenvalue. Each step of an inverse iteration gains the digits of
+/// this distance; with a shift at the eigenvalue itself the factors would be singular.
 /// Kind: tuned; measured on: not recorded.
-const DAMPED_MODE_OFFSET: f64 = 1e-8;
+pub(crate) const SHIFT_OFFSET: f64 = 1e-8;
 
 /// The same for repeated frequencies. A closer shift would mix modes that differ by rounding only, and lose the
 /// mixture of the initial mode.
@@ -126,7 +126,7 @@ pub(crate) fn damped_mode_with(
             return Ok(mode);
         }
     }
-    let mode = problem.follow(&undamped, DAMPED_MODE_OFFSET, interrupt)?;
+    let mode = problem.follow(&undamped, SHIFT_OFFSET, interrupt)?;
     if problem.residual(&mode, false)? {
         return Ok(mode);
     }

@@ -45,7 +45,11 @@ pub struct LinearModes {
 /// Degrees of freedom up to which all modes are found by dense algebra. Its rounding is relative to the highest
 /// frequency, which on finer meshes is too inaccurate for the lowest frequencies.
 /// Kind: tuned; measured on: not recorded.
-const LINEAR_MODES_DENSE_UP_TO: usize = 100;
+pub(crate) const ALL_MODES_UP_TO: usize = 100;
+
+/// Degrees of freedom for each mode that is requested, below which dense algebra is used as well.
+/// Kind: tuned; measured on: not recorded.
+const FEW_FOR_EACH: usize = 4;
 
 /// Rigid-body modes of a body in space.
 /// Kind: fixed.
@@ -234,6 +238,11 @@ pub(crate) fn pencil(model: &Model, wave: Wave, contacts: ContactState<'_>) -> R
     })
 }
 
+/// Whether `count` modes of `n` degrees of freedom are computed by dense algebra, which finds all modes.
+pub(crate) fn finds_all(n: usize, count: usize) -> bool {
+    n <= ALL_MODES_UP_TO || count > n / FEW_FOR_EACH
+}
+
 impl Pencil {
     /// Mass matrix M, whatever else the inertia contains.
     pub fn weight(&self) -> &Csc {
@@ -247,8 +256,7 @@ impl Pencil {
 
     /// Whether `count` modes are computed by dense algebra, which finds all modes.
     pub fn finds_all(&self, count: usize) -> bool {
-        let n = self.mass.rows;
-        n <= LINEAR_MODES_DENSE_UP_TO || count > n / 4
+        finds_all(self.mass.rows, count)
     }
 
     /// The `count` lowest modes, or all if there are fewer.

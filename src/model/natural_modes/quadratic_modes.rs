@@ -13,17 +13,10 @@ use crate::linalg::exact_sums::quadratic::quadratic;
 use crate::linalg::factors::factor::Factor;
 use crate::linalg::libraries::{DMatrix, Schur};
 use crate::linalg::sparse_storage::sparse::Csc;
+use crate::model::natural_modes::linear_modes::{ALL_MODES_UP_TO, finds_all};
 use crate::model::natural_modes::quadratic_problem::{Pair, QUADRATIC_PROBLEM_REAL, Quadratic, is_one};
 use crate::model::natural_modes::quadratic_search::lowest_by_search;
 use num_complex::Complex64;
-
-/// Degrees of freedom up to which all modes are found by dense algebra: 0.1 s for a mode or for all; the search takes less above.
-/// Kind: tuned; measured on: not recorded.
-const QUADRATIC_MODES_DENSE_UP_TO: usize = 100;
-
-/// Degrees of freedom for each mode that is requested, below which dense algebra is used as well.
-/// Kind: tuned; measured on: not recorded.
-const FEW_FOR_EACH: usize = 4;
 
 /// Iterations of Schur's form for each eigenvalue.
 /// Kind: cap.
@@ -63,8 +56,8 @@ impl Quadratic<'_> {
             return Ok(pairs);
         }
         let n = self.mass.rows;
-        let is_small = n <= QUADRATIC_MODES_DENSE_UP_TO;
-        let searched = if is_small || count > n / FEW_FOR_EACH {
+        let is_small = n <= ALL_MODES_UP_TO;
+        let searched = if finds_all(n, count) {
             None
         } else {
             lowest_by_search(self, &hermitian, count, interrupt)?

@@ -7,6 +7,7 @@
 use crate::error::{Result, Status, try_push};
 use crate::interrupt::Interrupt;
 use crate::linalg::iterative::lanczos;
+use crate::linalg::iterative::lanczos::DENSE_IF_HARD;
 use crate::linalg::iterative::near_shift::{Goal, Near, NearShift};
 use crate::linalg::sparse_storage::definite::resists_all_motion;
 use crate::linalg::sparse_storage::sparse::{Csc, Form};
@@ -30,11 +31,6 @@ const FARTHEST: f64 = 8.0;
 /// Most eigenvalues in a rectangle beyond the number that is requested: more are overdamped motions next to each other.
 /// Kind: cap.
 const MOST_ASIDE: usize = 60;
-
-/// Degrees of freedom up to which dense algebra, 7 s for all modes, takes over where eigenvalues are too many or too close to be
-/// told apart.
-/// Kind: tuned; measured on: not recorded.
-const DENSE_IF_HARD: usize = 400;
 
 /// w over the imaginary part of the shift, between which the shift suits.
 /// Kind: tuned; measured on: not recorded.

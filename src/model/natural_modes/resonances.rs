@@ -12,6 +12,7 @@ use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::matrices::structure::MatrixKind;
 use crate::model::matrices::wave::Wave;
+use crate::model::natural_modes::linear_modes::ALL_MODES_UP_TO;
 use crate::model::natural_modes::linear_modes::ContactState;
 use crate::model::natural_modes::quadratic_problem::Quadratic;
 use crate::model::natural_modes::quadratic_search::within;
@@ -37,10 +38,6 @@ impl Resonance {
         self.half_width <= RESONANCES_UNDAMPED * self.omega
     }
 }
-
-/// Degrees of freedom up to which all modes are found by dense algebra.
-/// Kind: tuned; measured on: not recorded.
-const RESONANCES_DENSE_UP_TO: usize = 100;
 
 /// Degrees of freedom from which a range that has few modes is searched, and how many times fewer these are.
 /// Kind: tuned; measured on: chains of 32 to 100 masses.
@@ -183,13 +180,13 @@ pub fn gyroscopic_frequencies(
     let number = h as f64;
     // A wide range has most modes of a small structure.
     let is_wide = high - low > WIDE_RANGE * (high + low);
-    let by_dense_algebra = n <= GYROSCOPIC_DENSE_UP_TO || n <= RESONANCES_DENSE_UP_TO && is_wide;
+    let by_dense_algebra = n <= GYROSCOPIC_DENSE_UP_TO || n <= ALL_MODES_UP_TO && is_wide;
     let mut values = None;
     if !by_dense_algebra {
         let frequencies = Range::new(low * number, high * number);
         values = within(problem, frequencies, RESONANCES_MOST_GYROSCOPIC, interrupt)?;
     }
-    if values.is_none() && n <= RESONANCES_DENSE_UP_TO {
+    if values.is_none() && n <= ALL_MODES_UP_TO {
         let mut all = Vec::new();
         for (value, _) in problem.lowest(n, interrupt)? {
             try_push(&mut all, value, CONTEXT)?;
@@ -283,11 +280,11 @@ fn modes_within(k: &Csc, m: &Csc, range: Range, interrupt: &Interrupt<'_>) -> Re
         return spectrum_slices::within((k, m), interval, most, interrupt);
     }
     if n >= NARROW_FROM {
-        let share = if n > RESONANCES_DENSE_UP_TO { 4 } else { NARROW_SHARE };
+        let share = if n > ALL_MODES_UP_TO { 4 } else { NARROW_SHARE };
         // Factors of a small matrix take no time that is worth a report.
         let is_stopped = || interrupt.check().is_err();
         let quiet = Interrupt::new(Some(&is_stopped), None);
-        let interrupt = if n > RESONANCES_DENSE_UP_TO { interrupt } else { &quiet };
+        let interrupt = if n > ALL_MODES_UP_TO { interrupt } else { &quiet };
         // The law of inertia tells first whether there are few. Dense algebra finds what a search does not.
         match spectrum_slices::within((k, m), interval, n / share, interrupt) {
             Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => return Err(e),

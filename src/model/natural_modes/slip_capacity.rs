@@ -24,6 +24,7 @@ use crate::model::Model;
 use crate::model::matrices::spring::along;
 use crate::model::matrices::structure::MatrixKind;
 use crate::model::matrices::wave::Wave;
+use crate::model::natural_modes::damped_mode::SHIFT_OFFSET;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -42,11 +43,7 @@ pub struct Resonance {
     pub growth: f64,
 }
 
-/// Relative distance of the shift from the squared frequency.
-/// Kind: tuned; measured on: not recorded.
-const SLIP_CAPACITY_SHIFT: f64 = 1e-8;
-
-/// Number of steps of the inverse iteration, each of which gains the digits of [`SLIP_CAPACITY_SHIFT`].
+/// Number of steps of the inverse iteration, each of which gains the digits of [`SHIFT_OFFSET`].
 /// Kind: cap.
 const SLIP_CAPACITY_MAX_STEPS: usize = 6;
 
@@ -120,13 +117,7 @@ pub(crate) fn resonance(
     // most work.
     let mut forces = try_vec(n, Complex64::ZERO, CONTEXT)?;
     model.add_forces_to(harmonic, 1.0, &mut forces);
-    let Some(shape) = left_null(
-        &dynamic(-w * w - SLIP_CAPACITY_SHIFT * square)?,
-        &mass,
-        &forces,
-        interrupt,
-    )?
-    else {
+    let Some(shape) = left_null(&dynamic(-w * w - SHIFT_OFFSET * square)?, &mass, &forces, interrupt)? else {
         return Ok(None);
     };
     let r = (0..n).map(|j| {

@@ -2,7 +2,7 @@
 //! of the structure: the sources of an adjoint solution.
 
 use crate::linalg::newton::linear_system::Jacobian;
-use crate::problem::epmc::{DAMPING_UNIT, EPMC_OMEGA_UNIT, Epmc};
+use crate::problem::epmc::{DAMPING_UNIT, Epmc, OMEGA_UNIT};
 use num_complex::Complex64;
 
 impl Epmc<'_> {
@@ -21,7 +21,7 @@ impl Epmc<'_> {
     /// Index of the unknown that represents the frequency, and the derivative of the frequency ω by it.
     #[must_use]
     pub fn frequency_unknown(&self, omega: f64) -> (usize, f64) {
-        (self.size() - 2, EPMC_OMEGA_UNIT * omega)
+        (self.size() - 2, OMEGA_UNIT * omega)
     }
 
     /// Index of the unknown that represents the damping ratio, and the derivative of the ratio by it.

@@ -7,11 +7,8 @@ use crate::studies::fit::fit_search::{FitSearch, State};
 
 const CONTEXT: &str = "further starts of a fit";
 
-/// Logarithms of the factors on friction and loads of the starts beside the given one: towards sliding, and towards sticking.
-/// Kind: tuned; measured on: not recorded.
-const FIT_LIMITS: [f64; 6] = [-1.15, 1.15, -2.3, 2.3, -4.6, 4.6];
-
-/// Half of the width of the logarithm within which further starts lie, where there are no bounds.
+/// Half of the width of the logarithm within which further starts lie, where there are no bounds, and the smallest logarithm of a factor on
+/// friction and loads of the starts beside the given one: half a decade.
 /// Kind: tuned; measured on: not recorded.
 const FIT_SPREAD: f64 = 1.15;
 
@@ -36,7 +33,8 @@ pub(super) fn further_starts(search: &FitSearch<'_>, first: &State, poor: bool) 
         free[k].is_log && matches!(constant, Constant::Mu | Constant::Preload)
     };
     if poor && (0..free.len()).any(is_limit) {
-        for factor in FIT_LIMITS {
+        // Towards sliding, and towards sticking.
+        for factor in [-1.0, 1.0, -2.0, 2.0, -4.0, 4.0].map(|way| way * FIT_SPREAD) {
             let mut z = try_copy(&first.z, CONTEXT)?;
             for (k, z) in z.iter_mut().enumerate().filter(|(k, _)| is_limit(*k)) {
                 *z = (*z + factor).clamp(free[k].lower, free[k].upper);

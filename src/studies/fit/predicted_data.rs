@@ -6,6 +6,7 @@
 use crate::analysis::forced::forced_curve::special_points_with;
 use crate::analysis::forced_response::forced_response;
 use crate::analysis::modes::nonlinear_mode::nonlinear_mode;
+use crate::analysis::residual_states::mode_band::NEXT_AMPLITUDE;
 use crate::at_a_point::complex_sensitivity::{Equations, complex_at};
 use crate::at_a_point::sensitivity_analysis::{Quantity, sensitivity_with};
 use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
@@ -23,10 +24,6 @@ use crate::studies::fit::shared_work::SharedWork;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the predicted data";
-
-/// Distance in log₁₀ of the second end of a range of one amplitude.
-/// Kind: tuned; measured on: not recorded.
-const FIT_NEXT_AMPLITUDE: f64 = 1e-3;
 
 /// log₁₀ of the first modal amplitude of a linear mode, and the distance that it keeps from the onset of slip.
 /// Kind: tuned; measured on: not recorded.
@@ -409,7 +406,7 @@ impl Predictor<'_> {
         let ends = |at: &[f64]| {
             let low = at.iter().fold(f64::INFINITY, |a, b| a.min(*b));
             let high = at.iter().fold(f64::NEG_INFINITY, |a, b| a.max(*b));
-            (low, high.max(low + FIT_NEXT_AMPLITUDE))
+            (low, high.max(low + NEXT_AMPLITUDE))
         };
         (options.log10_start, options.log10_stop) = ends(&at);
         let mut branch = nonlinear_mode(model, &self.solver, &ModeOptions { at: &at, ..options }, hooks)?;

@@ -11,8 +11,8 @@ use crate::studies::fit::thinned_data::{self, Start};
 const CONTEXT: &str = "the searches of a fit";
 
 /// Limit of the robust loss of the search that begins where the fit is poor: points that another branch of the model is nearest to do not
-/// lead it.
-/// Kind: tuned; measured on: not recorded.
+/// lead it. With normal errors it costs 5 % of the efficiency (Huber, Robust Statistics, 1981, §4.5).
+/// Kind: fixed.
 const FIT_ROBUST: f64 = 1.345;
 
 /// Fall of the loss from which a state with slip is preferred to one without: three standard deviations.

@@ -12,14 +12,10 @@ use crate::model::Model;
 use crate::options::{LifeOptions, SolverOptions};
 use crate::roots::root;
 use crate::studies::wear::life_length::{Doubt, LIFE_TRIES, Refusals, growth, length_of};
-use crate::studies::wear::life_step::{LifeState, LifeStep, Taken, ahead};
+use crate::studies::wear::life_step::{LIFE_NEGLIGIBLE, LifeState, LifeStep, Taken, ahead};
 use crate::studies::wear::worn_state::{WornState, WornStates};
 
 const CONTEXT: &str = "the life";
-
-/// Share of the tolerance by which the straight step across an event may err. Chosen: a twentieth does not add to the error.
-/// Kind: tuned; measured on: nothing, it is chosen.
-const LIFE_EVENT: f64 = 0.05;
 
 /// Share of the length across an event that the step before it leaves. Chosen: the path ahead errs by less than the rest of that length.
 /// Kind: tuned; measured on: nothing, it is chosen.
@@ -363,7 +359,9 @@ impl LifeWalk<'_> {
     /// the allowed share of the tolerance.
     fn length_across(&self, at: &LifeState, length: f64) -> Result<f64> {
         let bent = at.size_of(&self.states, &at.second()?);
-        Ok((0.5 * LIFE_EVENT * self.options.tolerance / bent).sqrt().min(length))
+        Ok((0.5 * LIFE_NEGLIGIBLE * self.options.tolerance / bent)
+            .sqrt()
+            .min(length))
     }
 
     /// Number of cycles at which a contact changes its state within a step, if one does. The work of a slipping

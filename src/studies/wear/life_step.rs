@@ -21,14 +21,10 @@ const CONTEXT: &str = "the steps of a life";
 /// Kind: cap; one or two on the chains of the tests.
 const LIFE_STEP_ITERATIONS: usize = 8;
 
-/// Share of the tolerance below which the equations of a step may be left. Chosen: a twentieth does not add to the error of a step.
+/// Share of the tolerance by which the equations of a step may be left, and by which a straight step across an event may err. Chosen: a
+/// twentieth does not add to the error of a step.
 /// Kind: tuned; measured on: nothing, it is chosen.
-const LIFE_STEP_RESIDUAL: f64 = 0.05;
-
-/// Share of the tolerance by which the rates of a state may be uncertain that is corrected by its derivatives, not solved again. Chosen:
-/// the secant of the derivatives takes about half of it away, which leaves the residual above.
-/// Kind: tuned; measured on: nothing, it is chosen.
-const LIFE_STEP_CORRECTED: f64 = 0.1;
+pub(super) const LIFE_NEGLIGIBLE: f64 = 0.05;
 
 /// Error over the tolerance from which a step is refused at its first vibration. Chosen: iterations change the estimate by less.
 /// Kind: tuned; measured on: nothing, it is chosen.
@@ -198,7 +194,7 @@ impl LifeStep {
                 let cubic = delta * (0.5 * (f0[j] + f1[j]) + delta / 12.0 * (start[j] - second[j]));
                 *gap = from.depths[j] + cubic - depths[j];
             }
-            if changes || to.size_of(states, &gap) <= LIFE_STEP_RESIDUAL * tolerance {
+            if changes || to.size_of(states, &gap) <= LIFE_NEGLIGIBLE * tolerance {
                 return Self::whole(from, to, [start, second]).map(Taken::Step);
             }
             let jacobian = &to.worn.rate_by_depth;
@@ -397,7 +393,8 @@ fn corrected(
         for x in &mut unknown {
             *x *= delta / 12.0;
         }
-        if to.size_of(states, &unknown) > LIFE_STEP_CORRECTED * tolerance {
+        // Corrected by derivatives, not solved again: their secant takes about half of it away, which leaves what is negligible.
+        if to.size_of(states, &unknown) > 2.0 * LIFE_NEGLIGIBLE * tolerance {
             return Ok(None);
         }
     }

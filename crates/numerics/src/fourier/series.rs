@@ -184,8 +184,8 @@ fn last_step(set: &HarmonicSet) -> f64 {
     SERIES_LAST_STEP / set.highest_reduced().max(1) as f64
 }
 
-/// Values of a series that a crossing takes, about.
-/// Kind: tuned; measured on: not recorded.
+/// Values of a series that a crossing, or another root, takes, about.
+/// Kind: block.
 pub const VALUES_OF_A_CROSSING: usize = 8;
 
 /// The time in (a, b) at which a signal passes `level`; the signal must be monotone between these times.

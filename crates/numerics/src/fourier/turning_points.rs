@@ -3,7 +3,7 @@
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::fourier::cubic_cell::CubicCell;
-use crate::fourier::series::{jet, turning_point};
+use crate::fourier::series::{VALUES_OF_A_CROSSING, jet, turning_point};
 use crate::interrupt::Interrupt;
 use num_complex::Complex64;
 use pulp::{Arch, Simd, WithSimd};
@@ -19,10 +19,6 @@ pub struct Extremum {
     /// Value of the signal at this time.
     pub x: f64,
 }
-
-/// Values of the series that a root takes, about.
-/// Kind: tuned; measured on: not recorded.
-const VALUES_OF_A_ROOT: usize = 8;
 
 /// Grid points per period of the highest harmonic.
 /// Kind: tuned; measured on: not recorded.
@@ -196,7 +192,7 @@ impl TurningPoints {
                 },
             };
             if left.positive != right.positive || left.value.abs().min(right.value.abs()) <= hidden {
-                interrupt.check_before((VALUES_OF_A_ROOT * packed.len()) as u64)?;
+                interrupt.check_before((VALUES_OF_A_CROSSING * packed.len()) as u64)?;
                 isolate((set, packed), [left, right], &bounds, found, interrupt)?;
             }
             left = right;

@@ -10,9 +10,9 @@ use num_complex::Complex64;
 use pulp::bytemuck::cast_slice;
 use pulp::{Arch, Simd, WithSimd};
 
-/// Rows up to which plain loops make a product.
+/// Rows up to which plain loops make a product: blocked ones have no room on the small stack of a small model.
 /// Kind: tuned; measured on: not recorded.
-const LOOPS_UP_TO: usize = 48;
+pub const LOOPS_UP_TO: usize = 48;
 
 /// c ← A B for matrices A and C with `rows` rows.
 pub fn multiply(a: &[Complex64], b: &[Complex64], c: &mut [Complex64], rows: usize) {

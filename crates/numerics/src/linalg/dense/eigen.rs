@@ -22,7 +22,7 @@ pub struct Pairs {
 
 /// Order up to which the eigensolver of nalgebra is so quick that nobody needs to interrupt it.
 /// Kind: tuned; measured on: not recorded.
-const SMALL_UP_TO: usize = 100;
+pub const EIGEN_SMALL_UP_TO: usize = 100;
 
 /// Columns of a product between two checks of the interrupt.
 /// Kind: block.
@@ -65,13 +65,13 @@ pub fn generalised(k: &DMatrix<Complex64>, m: &DMatrix<Complex64>, interrupt: &I
 /// others (their rows carry K only), and the rest is scaled by Λ^(-1/2).
 fn in_one_unit(k: &DMatrix<Complex64>, m: &DMatrix<Complex64>, interrupt: &Interrupt<'_>) -> Result<Pairs> {
     let n = k.nrows();
-    if n > SMALL_UP_TO
+    if n > EIGEN_SMALL_UP_TO
         && let Some(pairs) = with_definite_mass(k, m, REGULAR, interrupt)?
     {
         return Ok(pairs);
     }
     // The common case, M positive definite.
-    if n <= SMALL_UP_TO
+    if n <= EIGEN_SMALL_UP_TO
         && let Some((values, vectors)) = small_pencil::with_definite_mass(k, m, REGULAR)?
     {
         interrupt.check()?;
@@ -160,7 +160,7 @@ pub fn with_definite_mass(
 ) -> Result<Option<Pairs>> {
     let n = k.nrows();
     // On a small stack blocked products of real numbers have no room.
-    if n > SMALL_UP_TO
+    if n > EIGEN_SMALL_UP_TO
         && let Some((values, vectors)) = real_pencil::with_definite_mass(k, m, regular, interrupt)?
     {
         return Ok(Some(Pairs { values, vectors }));
@@ -230,7 +230,7 @@ fn product(a: &DMatrix<Complex64>, b: &DMatrix<Complex64>, interrupt: &Interrupt
 fn hermitian(a: &DMatrix<Complex64>, interrupt: &Interrupt<'_>) -> Result<(Vec<f64>, DMatrix<Complex64>)> {
     interrupt.check()?;
     let n = a.nrows();
-    if n <= SMALL_UP_TO {
+    if n <= EIGEN_SMALL_UP_TO {
         return small_pencil::hermitian(a);
     }
     let half = Complex64::new(0.5, 0.0);

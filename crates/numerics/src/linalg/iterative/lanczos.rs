@@ -61,7 +61,7 @@ pub fn lowest(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Resu
     // A shift far below the typical stiffness per mass makes K + σM regular for rigid bodies and leaves the lowest
     // eigenvalues well separated from the rest.
     let BelowAll { inverse, shift, place } = below_all(k, m, 1e-7 * stiff / heavy, interrupt)?;
-    if place == Place::Further && n <= DENSE_IF_NEGATIVE {
+    if place == Place::Further && n <= DENSE_IF_HARD {
         return all_of(k, m, count, interrupt);
     }
     let mut search = LanczosSearch {
@@ -173,9 +173,10 @@ enum Goal {
     Above(f64, usize),
 }
 
-/// Order up to which dense algebra finds the modes of a stiffness that is negative in some direction.
+/// Order up to which dense algebra, some seconds for all modes, takes over where a search is hard: of a stiffness that is negative in some
+/// direction, or of eigenvalues that are too many or too close to be told apart.
 /// Kind: tuned; measured on: not recorded.
-const DENSE_IF_NEGATIVE: usize = 400;
+pub const DENSE_IF_HARD: usize = 400;
 
 /// Largest number of square matrices that [`eigen::generalised`] holds at a time.
 /// Kind: fixed.

@@ -20,7 +20,7 @@ const DIRECT_IF_COUPLED: usize = 1200;
 
 /// Unknowns of the factored block, unless the first numbers of the groups are more.
 /// Kind: tuned; measured on: not recorded.
-const AUTOMATIC_BLOCK: usize = 200;
+pub const FACTORED_BLOCK: usize = 200;
 
 /// Most products of an iteration.
 /// Kind: cap.
@@ -93,7 +93,7 @@ impl AutomaticSystem {
         let first = group % 2 + 2;
         let behind = operator.behind();
         let groups = (self.n - behind) / group.max(1);
-        let pairs = (AUTOMATIC_BLOCK / groups.max(1)).saturating_sub(group % 2) / 2;
+        let pairs = (FACTORED_BLOCK / groups.max(1)).saturating_sub(group % 2) / 2;
         let part = first.max(group % 2 + 2 * pairs);
         let lengths = Lengths {
             group,
