@@ -1,7 +1,7 @@
 //! Values of the responses at every stored point of a branch, against its own harmonics, sampled in time.
 
 use crate::common::chains::chain;
-use crate::common::models::Structure;
+use crate::common::models::{self, Structure};
 use crate::common::{at_dof, harmonics, omega_range};
 use hbvib::{
     Branch, Component, Contact, ForcedOptions, Hooks, Measure, Model, Response, SolverOptions, forced_response,
@@ -228,4 +228,43 @@ fn the_first_response_leads_the_amplitude_and_the_peaks() {
         );
     }
     assert!(!plain.peaks().is_empty());
+}
+
+/// A linear structure moves in the harmonics of its forces alone, which may leave some out.
+#[test]
+fn measures_of_a_linear_structure_are_those_of_its_closed_form() {
+    for forced in [&[1, 4][..], &[1, 5], &[3, 5], &[0, 1, 3], &[2, 3], &[1, 2]] {
+        let mut model = models::oscillator(1.0, 1.0).damping(&[0.1]).build();
+        let force = |h: usize| Complex64::new(1.0, if h == 0 { 0.0 } else { -0.7 * h as f64 });
+        for &h in forced {
+            model.add_force(0, h, force(h)).unwrap();
+        }
+        let responses = [Measure::Peak, Measure::Range].map(|measure| Response {
+            dofs: &[0],
+            measure,
+            ..Response::default()
+        });
+        let omega = 0.9;
+        let range = ForcedOptions {
+            responses: &responses,
+            ..omega_range(omega, omega)
+        };
+        let branch = forced_response(&model, &harmonics(9), &range, &mut Hooks::default()).unwrap();
+        let n = 20_000;
+        let motion = |j: i32| -> f64 {
+            let tau = TAU * f64::from(j) / f64::from(n);
+            let of = |&h: &usize| {
+                let w = h as f64 * omega;
+                (force(h) / Complex64::new(1.0 - w * w, 0.1 * w) * Complex64::cis(h as f64 * tau)).re
+            };
+            forced.iter().map(of).sum()
+        };
+        let values: Vec<f64> = (0..n).map(motion).collect();
+        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        for (found, exact) in branch.responses().iter().zip([high.max(-low), high - low]) {
+            let off = found.values()[0] / exact - 1.0;
+            assert!((-1e-12..1e-6).contains(&off), "{forced:?}: {off:e}");
+        }
+    }
 }

@@ -84,6 +84,27 @@ impl HarmonicSet {
         })
     }
 
+    /// The set with the harmonics between those that are carried, where some are not, as of linear structures whose forces leave
+    /// harmonics out: series count their harmonics by the stride.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn without_gaps(&self) -> Result<Option<Self>> {
+        let step = self.base * self.stride;
+        let highest = self.numbers.last().copied().unwrap_or(0);
+        if self.oscillating() == highest.div_ceil(step) {
+            return Ok(None);
+        }
+        let mut numbers = Vec::new();
+        if self.has_mean() {
+            try_push(&mut numbers, 0, "the list of harmonics")?;
+        }
+        for number in (self.base..=highest).step_by(step) {
+            try_push(&mut numbers, number, "the list of harmonics")?;
+        }
+        Ok(Some(Self { numbers, ..*self }))
+    }
+
     /// The carried harmonic numbers, ascending.
     #[must_use]
     #[inline]
@@ -283,5 +304,24 @@ mod tests {
         let linear = HarmonicSet::excited(&[1, 4], 9, false, true, false).unwrap();
         assert_eq!(linear.numbers(), [1, 4]);
         assert!(HarmonicSet::excited(&[5], 3, true, true, false).is_err());
+    }
+
+    #[test]
+    fn harmonics_between_the_carried_ones_are_added_where_some_are_missing() {
+        for (forced, whole) in [
+            (&[1, 4][..], Some(vec![1, 2, 3, 4])),
+            (&[3, 5], Some(vec![1, 3, 5])),
+            (&[2, 10], Some(vec![2, 6, 10])),
+            (&[0, 1, 3], Some(vec![0, 1, 2, 3])),
+            (&[2, 3], Some(vec![1, 2, 3])),
+            (&[1, 2], None),
+            (&[0, 7], None),
+            (&[2, 6], None),
+            (&[0], None),
+        ] {
+            let set = HarmonicSet::excited(forced, 12, false, true, false).unwrap();
+            let found = set.without_gaps().unwrap().map(|set| set.numbers().to_vec());
+            assert_eq!(found, whole, "{forced:?}");
+        }
     }
 }

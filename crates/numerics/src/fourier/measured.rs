@@ -53,6 +53,8 @@ pub struct Reader {
     weights: Vec<Complex64>,
     /// Instants of the extremes read last, as reduced times; NaN for measures without extremes.
     instants: [f64; 2],
+    /// Where the carried harmonics have gaps, the set without them and a signal of it.
+    whole: Option<(HarmonicSet, Vec<f64>)>,
 }
 
 impl Reader {
@@ -61,15 +63,24 @@ impl Reader {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new(set: &HarmonicSet) -> Result<Self> {
+        let whole = match set.without_gaps()? {
+            Some(whole) => {
+                let signal = try_vec(whole.packed_len(), 0.0, CONTEXT)?;
+                Some((whole, signal))
+            }
+            None => None,
+        };
+        let scanned = whole.as_ref().map_or(set, |(whole, _)| whole);
         let mut extrema = Vec::new();
         extrema
-            .try_reserve_exact(2 * set.highest_reduced() + 4)
+            .try_reserve_exact(2 * scanned.highest_reduced() + 4)
             .map_err(|_| Error::out_of_memory(CONTEXT))?;
         Ok(Self {
-            turning_points: TurningPoints::new(set)?,
+            turning_points: TurningPoints::new(scanned)?,
             extrema,
             weights: try_vec(set.numbers().len(), Complex64::ZERO, CONTEXT)?,
             instants: [f64::NAN; 2],
+            whole,
         })
     }
 
@@ -185,6 +196,13 @@ impl Reader {
         interrupt: &Interrupt<'_>,
         size: impl Fn(f64) -> f64,
     ) -> Result<Extremum> {
+        let (set, packed) = match &mut self.whole {
+            Some((whole, signal)) => {
+                whole.transfer(set, packed, 1.0, signal);
+                (&*whole, &**signal)
+            }
+            None => (set, packed),
+        };
         self.turning_points.find(set, packed, &mut self.extrema, interrupt)?;
         let mean = if set.has_mean() { packed[0] } else { 0.0 };
         let mut best = Extremum { tau: 0.0, x: mean };
@@ -239,6 +257,10 @@ mod tests {
             }
         }
         sets.push(HarmonicSet::excited(&[2, 4], 12, true, false, false).unwrap());
+        // Forces of a linear structure, which leave harmonics out.
+        for forced in [&[1, 4][..], &[3, 5], &[0, 1, 3], &[2, 3]] {
+            sets.push(HarmonicSet::excited(forced, 12, false, true, false).unwrap());
+        }
         sets
     }
 
@@ -249,9 +271,10 @@ mod tests {
     }
 
     fn at(set: &HarmonicSet, packed: &[f64], tau: f64) -> f64 {
-        let mut row = vec![0.0; set.packed_len()];
-        set.basis(tau, &mut row);
-        row.iter().zip(packed).map(|(a, b)| a * b).sum()
+        let values = set.numbers().iter().enumerate();
+        values
+            .map(|(i, number)| (set.get(packed, i) * Complex64::cis((number / set.base()) as f64 * tau)).re)
+            .sum()
     }
 
     #[test]
@@ -267,7 +290,8 @@ mod tests {
             let mut reader = Reader::new(set).unwrap();
             let mut read = |measure| reader.read(set, measure, &packed, &Interrupt::none()).unwrap().value;
             // A sampled extreme misses by the curvature and half a sample.
-            let bend = (set.highest_reduced() as f64 * TAU / f64::from(n)).powi(2) * (high - low);
+            let highest = set.numbers()[set.numbers().len() - 1] / set.base();
+            let bend = (highest as f64 * TAU / f64::from(n)).powi(2) * (high - low);
             assert!((read(Measure::Peak) - high.max(-low)).abs() <= bend);
             assert!(read(Measure::Peak) >= high.max(-low) - 1e-14);
             assert!((read(Measure::Range) - (high - low)).abs() <= 2.0 * bend);
