@@ -162,8 +162,8 @@ typedef enum {
   /// Parameter responses only: the followed peak, or maximum of damping, met a minimum and
   /// vanished.
   HBVIB_STOPPED_PEAK_VANISHED = 11,
-  /// The curve is closed: it came back to its first point, and all of it within the range is
-  /// kept.
+  /// The curve is closed: it came back to its first point, or eight times to a fold that it had
+  /// passed, where a step entered it. All of it within the range is kept.
   HBVIB_STOPPED_CLOSED = 12,
   /// A required pointer is NULL.
   HBVIB_E_NULL = -1,

@@ -33,7 +33,8 @@ class Status(enum.IntEnum):
     STOPPED_NO_PEAK   Batches only: the amplitude has no maximum within the range.
     STOPPED_PEAK_VANISHED   Parameter responses only: the followed peak, or maximum of damping, met a minimum and
         vanished.
-    STOPPED_CLOSED   The curve is closed: it came back to its first point, and all of it within the range is kept.
+    STOPPED_CLOSED   The curve is closed: it came back to its first point, or eight times to a fold that it had passed,
+        where a step entered it.
     E_NULL   A required pointer is NULL.
     E_ARGUMENT   A value lies outside its range.
     E_DIMENSION   A count or length does not fit.
