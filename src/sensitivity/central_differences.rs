@@ -22,10 +22,10 @@ mod tests {
         let f = |x: f64| 2.0 - 3.0 * x + 5.0 * x.powi(2) - 7.0 * x.powi(3) + 11.0 * x.powi(4);
         let slope: f64 = central_differences(1e3).iter().map(|(x, weight)| weight * f(*x)).sum();
         assert!((slope + 3.0).abs() < 1e-13, "{slope}");
-        let cubic: f64 = central_differences(1e3)
+        let fifth: f64 = central_differences(1e3)
             .iter()
             .map(|(x, weight)| weight * x.powi(5))
             .sum();
-        assert!(cubic.abs() > 1e-5, "the fifth power shows the order: {cubic}");
+        assert!(fifth.abs() > 1e-5, "the fifth power shows the order: {fifth}");
     }
 }

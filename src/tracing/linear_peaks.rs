@@ -200,18 +200,16 @@ impl Between {
     /// ends: beyond a maximum that has a minimum beside it, or where the derivative comes near a further change of sign.
     fn doubtful(&self, ends: [f64; 2], uncertain: f64) -> Option<f64> {
         let mut near = None;
-        // Maxima, the part after the first, and its last two derivatives, in this order.
-        let mut maxima = 0;
-        let mut beyond = 1;
+        // The number of maxima, and the first part boundary beyond one.
+        let (mut maxima, mut beyond) = (0, None);
+        // The derivatives at the last two boundaries, and |z|² at the last.
         let (first, mut size) = self.growth(0.0);
         let mut last = [f64::NAN, first];
         for i in 1..=PARTS {
             let (slope, next_size) = self.growth(i as f64 / PARTS as f64);
             if last[1] > 0.0 && slope <= 0.0 {
                 maxima += 1;
-                if maxima == 1 {
-                    beyond = i;
-                }
+                beyond.get_or_insert(i.min(PARTS - 1));
             }
             let is_least = [last[0], slope]
                 .iter()
@@ -223,11 +221,7 @@ impl Between {
             size = next_size;
         }
         let is_single = ends[0] > 0.0 && ends[1] <= 0.0 && maxima == 1;
-        let part = if maxima > 0 && !is_single {
-            Some(beyond.min(PARTS - 1))
-        } else {
-            near
-        };
+        let part = beyond.filter(|_| !is_single).or(near);
         part.map(|i| i as f64 / PARTS as f64)
     }
 

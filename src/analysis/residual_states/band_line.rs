@@ -1,6 +1,5 @@
 //! The band of one free slider: solutions from one limit of its friction to the other, with every extremum between.
 
-use crate::analysis::residual_states::band_search::BAND_SEARCH_SMALLEST;
 use crate::analysis::residual_states::held_sliders::{HeldSliders, HeldState};
 use crate::error::{Result, try_push};
 use crate::roots::Bracket;
@@ -10,6 +9,10 @@ const CONTEXT: &str = "the states of a band";
 /// Steps over the width that the margins foretell at the first state.
 /// Kind: tuned; measured on: not recorded.
 const BAND_LINE_STEPS: f64 = 12.0;
+
+/// Smallest step, over that width.
+/// Kind: tuned; measured on: not recorded.
+const BAND_LINE_SMALLEST: f64 = 1e-5;
 
 /// Margin, over the mean limit, of a slider at its limit.
 /// Kind: rounding.
@@ -130,7 +133,7 @@ impl LineWalk<'_, '_> {
             }
             let Some(next) = self.solve(last.places[0] + sign * step, &last)? else {
                 step *= 0.5;
-                if step < BAND_SEARCH_SMALLEST * self.width {
+                if step < BAND_LINE_SMALLEST * self.width {
                     return Ok((states, false));
                 }
                 continue;
@@ -142,7 +145,7 @@ impl LineWalk<'_, '_> {
                     return Ok((states, true));
                 }
                 step *= 0.5;
-                if step < BAND_SEARCH_SMALLEST * self.width {
+                if step < BAND_LINE_SMALLEST * self.width {
                     return Ok((states, false));
                 }
                 continue;

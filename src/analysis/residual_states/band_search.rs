@@ -9,11 +9,11 @@ use crate::error::{Result, try_copy, try_push, try_vec};
 
 const CONTEXT: &str = "the search of a band";
 
-/// First radius of a step, its largest, and the smallest, which ends a search; in units of the sliders' distances.
+/// First radius of a step, its largest, and the smallest, which ends the search; in units of the sliders' distances.
 /// Kind: tuned; measured on: not recorded.
 const BAND_SEARCH_FIRST: f64 = 0.3;
 const BAND_SEARCH_LARGEST: f64 = 1.0;
-pub(super) const BAND_SEARCH_SMALLEST: f64 = 1e-5;
+const BAND_SEARCH_SMALLEST: f64 = 1e-5;
 
 /// Share of the foretold gain that is enough, growth after success and shrinking after failure.
 /// Kind: tuned; measured on: not recorded.

@@ -13,13 +13,16 @@
 use crate::condense::by_modes::sum_terms::{Denominator, Source};
 use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, try_push, try_vec};
-use crate::linalg::COPIED_UP_TO;
 use crate::linalg::libraries::{Accum, Arch, MatMut, MatRef, Par, Simd, WithSimd, cast_slice, matmul};
 use crate::model::few_motions::reduced_wave::MotionRow;
 use num_complex::Complex64;
 use std::sync::{Arc, OnceLock};
 
 const CONTEXT: &str = "the flexibility from modes";
+
+/// Multiplications up to which plain loops are quicker than the blocked product.
+/// Kind: tuned; measured on: not recorded.
+const SMALL_PRODUCT: usize = 4096;
 
 /// Numbers of modes that are not summed by series; the least that suffices is taken.
 /// Kind: tuned; measured on: not recorded.
@@ -309,7 +312,7 @@ impl ModalRows {
         let factors = &factors[from..];
         let within = from * rows..(from + factors.len()) * rows;
         let (left, adjoint) = (&self.left[within.clone()], &self.adjoint()[within]);
-        if out.len() * factors.len() <= COPIED_UP_TO {
+        if out.len() * factors.len() <= SMALL_PRODUCT {
             for ((left, adjoint), factor) in left.chunks_exact(rows).zip(adjoint.chunks_exact(rows)).zip(factors) {
                 for (out, right) in out.chunks_exact_mut(rows).zip(adjoint) {
                     let weighted = right.conj() * factor;

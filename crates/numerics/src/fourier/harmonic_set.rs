@@ -169,7 +169,7 @@ impl HarmonicSet {
         self.numbers.len() - usize::from(self.has_mean())
     }
 
-    /// Reduced number of the k-th carried harmonic above zero, counted from 0.
+    /// Reduced number of the k-th carried harmonic above zero, counted from 0, of a set without gaps: see [`Self::without_gaps`].
     #[must_use]
     #[inline]
     pub fn reduced(&self, k: usize) -> usize {
