@@ -1764,8 +1764,9 @@ typedef struct {
 /// have a callback of their own, because callers count its calls.
 typedef int32_t (*hbvib_phase_fn)(void *user, const hbvib_phase_report *report);
 
-/// Called at each accepted point. A result other than 0 stops the solve and keeps the points; their
-/// stability, where it was asked for, is still found, which phase and cancel stop.
+/// Called at each accepted point. A result other than 0 stops the solve and keeps the points.
+/// Results of what is kept, as those of the last period in hbvib_time_response, are still computed;
+/// phase and cancel stop these, too.
 typedef int32_t (*hbvib_progress_fn)(void *user, const hbvib_progress *progress);
 
 /// Receives a line of the log, whose text is valid during the call.

@@ -223,8 +223,8 @@ static int64_t reports;
 static clock_t started;
 static double most_working = 0.5; /* seconds */
 
-/* An answer to a report: nothing may be reported after a phase was told to stop, and no point after a point was. The
- * results of the points that a solve keeps, as their stability, have phases of their own. */
+/* An answer to a report: nothing may be reported after a phase was told to stop, and no point after a point was: the
+ * results of what is kept then, as those of the last period in time, have a phase of their own. */
 enum { POINT = 1, PHASE = 2 };
 
 static int32_t answer(int report, int stop)

@@ -91,8 +91,9 @@ pub struct hbvib_phase_report {
 pub type hbvib_phase_fn =
     Option<unsafe extern "C-unwind" fn(user: *mut c_void, report: *const hbvib_phase_report) -> i32>;
 
-/// Called at each accepted point. A result other than 0 stops the solve and keeps the points; their
-/// stability, where it was asked for, is still found, which phase and cancel stop.
+/// Called at each accepted point. A result other than 0 stops the solve and keeps the points.
+/// Results of what is kept, as those of the last period in hbvib_time_response, are still computed;
+/// phase and cancel stop these, too.
 pub type hbvib_progress_fn =
     Option<unsafe extern "C-unwind" fn(user: *mut c_void, progress: *const hbvib_progress) -> i32>;
 
