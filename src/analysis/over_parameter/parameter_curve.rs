@@ -15,6 +15,17 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the parameter response";
 
+/// Change of a result over a step by its slope at one end, relative to it, that is none.
+/// Kind: rounding.
+const PLATEAU_SLOPE: f64 = 1e-10;
+
+/// Halvings between a plateau and the other end of a step: an optimum within a thousandth of the step from the edge may be missed.
+/// Kind: cap.
+const PLATEAU_HALVINGS: usize = 10;
+
+/// A point with its level of harmonics.
+type AtLevel = (Point, usize);
+
 /// Kind of a point beside the curve.
 #[derive(Clone, Copy)]
 enum Beside {
@@ -204,8 +215,11 @@ impl<'a> CurveRecorder<'a> {
                 locator.at_parameter(problem, a, b, p, interrupt)
             })?;
         }
+        let Some(((a, level_a), (b, level_b))) = self.beside_plateau((a, level_a), (b, level_b))? else {
+            return Ok(());
+        };
         for is_maximum in [true, false] {
-            let (sensed_a, sensed_b) = (sensed(a, is_maximum)?, sensed(b, is_maximum)?);
+            let (sensed_a, sensed_b) = (sensed(&a, is_maximum)?, sensed(&b, is_maximum)?);
             if !SpecialPoint::Peak.between(&sensed_a, &sensed_b) {
                 continue;
             }
@@ -217,6 +231,51 @@ impl<'a> CurveRecorder<'a> {
             })?;
         }
         Ok(())
+    }
+
+    /// The part between two neighbours in which an optimum is sought; `None`: there is none.
+    ///
+    /// While all contacts stick, or none acts, a result does not depend on their limits. At an end on such a plateau the slope
+    /// is zero, so that its sign says nothing of an optimum between the edge of the plateau and the other end. Halving finds the
+    /// edge, or a point before it whose slope has the other sign.
+    fn beside_plateau(
+        &mut self,
+        (a, level_a): (&Point, usize),
+        (b, level_b): (&Point, usize),
+    ) -> Result<Option<(AtLevel, AtLevel)>> {
+        let range = b.parameter() - a.parameter();
+        let flat_at = [a, b].map(|end| is_flat(end, range));
+        if flat_at[0] == flat_at[1] {
+            return Ok(match flat_at[0] {
+                true => None,
+                false => Some(((a.try_clone()?, level_a), (b.try_clone()?, level_b))),
+            });
+        }
+        self.followed.select(level_a.max(level_b))?;
+        let level = self.followed.resolution();
+        let (a, b) = (self.followed.transfer(a, level_a)?, self.followed.transfer(b, level_b)?);
+        let mut locator = Locator::new(a.unknowns().len(), self.settings)?;
+        let (mut on, mut off, mut inner) = match flat_at[0] {
+            true => (0.0, 1.0, b.try_clone()?),
+            false => (1.0, 0.0, a.try_clone()?),
+        };
+        let slope = |point: &Point| SpecialPoint::Peak.function(point, 1.0);
+        let sense = slope(&inner);
+        for _ in 0..PLATEAU_HALVINGS {
+            let share = 0.5 * (on + off);
+            let Some(point) = locator.between(self.followed.problem(), (&a, &b), share, self.interrupt)? else {
+                break;
+            };
+            if is_flat(&point, range) {
+                on = share;
+            } else if slope(&point) * sense < 0.0 {
+                let (point, inner) = ((point, level), (inner, level));
+                return Ok(Some(if flat_at[0] { (point, inner) } else { (inner, point) }));
+            } else {
+                (off, inner) = (share, point);
+            }
+        }
+        Ok(None)
     }
 
     /// Searches for a point between two neighbours, with the harmonics that this point requires.
@@ -327,6 +386,13 @@ impl<'a> CurveRecorder<'a> {
             newton_iterations: point.iterations,
         })
     }
+}
+
+/// Whether a result over a range as long as this one would not change but by rounding, if its slope stayed that of a point.
+fn is_flat(point: &Point, range: f64) -> bool {
+    let rate = point.tangent.last().copied().unwrap_or(0.0);
+    let change = SpecialPoint::Peak.function(point, 1.0) * range;
+    change.abs() <= PLATEAU_SLOPE * point.amplitude.norm() * rate.abs()
 }
 
 /// A point whose observed number is its result or, for a minimum, the reciprocal.
