@@ -106,7 +106,8 @@ impl<'a> Equations<'a> {
     /// The equations of a point that watch a response; the last ones are used again where they are valid.
     fn of(
         &mut self,
-        (branch, point): (&'a Branch, usize),
+        branch: &'a Branch,
+        point: usize,
         response: &Response<'_>,
         interrupt: &'a Interrupt<'a>,
     ) -> Result<&mut ForcedPoint<'a>> {
@@ -135,7 +136,7 @@ impl<'a> Equations<'a> {
         let Some((omega, motion)) = branch.omega_at(point).zip(branch.motion_at(point)) else {
             return fail!(Index, "point = {point}, needs 0 .. {}", branch.stored());
         };
-        self.of((branch, point), response, interrupt)?
+        self.of(branch, point, response, interrupt)?
             .complex_amplitude(motion, omega)
     }
 }
@@ -170,7 +171,7 @@ pub(crate) fn complex_at<'a>(
              harmonics, tolerance = 0"
         );
     }
-    let at = equations.of((branch, point), response, interrupt)?;
+    let at = equations.of(branch, point, response, interrupt)?;
     let nothing = Complex64::new(f64::NAN, f64::NAN);
     let mut found = ComplexSensitivities {
         value: nothing,

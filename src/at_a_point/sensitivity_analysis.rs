@@ -158,7 +158,7 @@ pub fn sensitivity_with(
         Some(at) if is_frequency(of) => {
             let mut reasons = try_copy(&found.reasons, CONTEXT)?;
             let amplitude = peak_amplitude(branch, of, point);
-            found.values = peak_shift(at, (motion, omega, amplitude), parameters.len(), |adjoint, values| {
+            found.values = peak_shift(at, motion, omega, amplitude, parameters.len(), |adjoint, values| {
                 derivatives(adjoint, values, &mut reasons)
             })?;
             found.reasons = reasons;

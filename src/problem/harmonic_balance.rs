@@ -501,7 +501,7 @@ impl Jacobian for HarmonicBalance<'_> {
             // All numbers of a motion are active or none.
             if active[motion * m] {
                 self.forces
-                    .couple_all(motion, &self.memory.flexibility, &mut self.memory.change, (columns, n))?;
+                    .couple_all(motion, &self.memory.flexibility, &mut self.memory.change, columns, n)?;
             }
         }
         Ok(())

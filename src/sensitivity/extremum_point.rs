@@ -48,7 +48,9 @@ pub(crate) fn extremum_matrix(
 /// Those of the model and of callbacks; `OutOfMemory`; `StoppedByCaller`.
 pub(crate) fn extremum_gradient(
     point: &mut ForcedPoint<'_>,
-    (u, omega, length): (&[f64], f64, f64),
+    u: &[f64],
+    omega: f64,
+    length: f64,
     at: &FoldCondition,
     unit: f64,
 ) -> Result<Vec<f64>> {
@@ -68,7 +70,7 @@ pub(crate) fn extremum_gradient(
         for ((to, y), t) in moved.iter_mut().zip(u).zip(along) {
             *to = y + step * t;
         }
-        let gradient = point.weighted_gradient(&moved, omega + step * d_omega, (w, weight))?;
+        let gradient = point.weighted_gradient(&moved, omega + step * d_omega, w, weight)?;
         let factor = share / length;
         for (x, g) in found.iter_mut().zip(&gradient) {
             *x += factor * g;
@@ -79,7 +81,7 @@ pub(crate) fn extremum_gradient(
 
 impl ForcedPoint<'_> {
     /// The derivatives of −L (wᵀR + aA) by the motions and by ω, with the unit of lengths L and the weight a of the amplitude.
-    fn weighted_gradient(&mut self, u: &[f64], omega: f64, (w, weight): (&[f64], f64)) -> Result<Vec<f64>> {
+    fn weighted_gradient(&mut self, u: &[f64], omega: f64, w: &[f64], weight: f64) -> Result<Vec<f64>> {
         let (by_motion, amplitude) = self.amplitude(u, omega)?;
         let length = self.length();
         let mut gradient = try_vec(u.len() + 1, 0.0, CONTEXT)?;

@@ -197,7 +197,7 @@ impl<'a> ForcedPoint<'a> {
             return Ok(None);
         };
         let mut x = try_vec(condensed.ndof(), Complex64::ZERO, CONTEXT)?;
-        self.recover((u, omega), i, &mut x)?;
+        self.recover(u, omega, i, &mut x)?;
         let amplitude = match &self.watched {
             Some((gauges, _)) => gauges.amplitude(0, (i, omega), &x),
             None => return fail!(Internal, "no response is watched"),
@@ -206,7 +206,7 @@ impl<'a> ForcedPoint<'a> {
     }
 
     /// The motion of the i-th carried harmonic, in the unit of lengths, at the point evaluated last.
-    fn recover(&mut self, (u, omega): (&[f64], f64), i: usize, x: &mut [Complex64]) -> Result<()> {
+    fn recover(&mut self, u: &[f64], omega: f64, i: usize, x: &mut [Complex64]) -> Result<()> {
         let condensed = self.condensed;
         let (set, m) = (condensed.set(), condensed.set().packed_len());
         self.problem.contact_force(u, i, &mut self.w);
@@ -366,7 +366,7 @@ impl<'a> ForcedPoint<'a> {
             let block = &condensed.blocks()[i];
             match known {
                 Some((own, motion)) if own == i => x.copy_from_slice(motion),
-                _ => self.recover((u, omega), i, &mut x)?,
+                _ => self.recover(u, omega, i, &mut x)?,
             }
             let load = &mut self.by_omega[i * n..(i + 1) * n];
             load.fill(Complex64::ZERO);
@@ -460,7 +460,7 @@ impl<'a> ForcedPoint<'a> {
     ///
     /// # Errors
     /// As [`Self::adjoint`].
-    pub fn by_slider(&mut self, (coordinate, stiffness): (usize, f64), omega: f64) -> Result<Vec<f64>> {
+    pub fn by_slider(&mut self, coordinate: usize, stiffness: f64, omega: f64) -> Result<Vec<f64>> {
         let condensed = self.condensed;
         let set = condensed.set();
         let m = set.packed_len();

@@ -82,7 +82,8 @@ impl ForcedPoint<'_> {
 /// Those of the law; `OutOfMemory`, `StoppedByCaller`.
 pub(crate) fn work_at_fixed_motion(
     (at_frequency, number, constant): (&Model, usize, Constant),
-    (condensed, samples): (&Condensed, usize),
+    condensed: &Condensed,
+    samples: usize,
     adjoint: &Adjoint,
     interrupt: &Interrupt<'_>,
 ) -> Result<f64> {

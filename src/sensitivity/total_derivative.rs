@@ -82,12 +82,12 @@ impl<'a> TotalDerivative<'a> {
                 sum
             }
             Parameter::Direction { which, direction } => -with_direction(model, condensed, adjoint, *which, direction)?,
-            Parameter::Factor { which } => -with_whole(model, condensed, adjoint, (*which, &mut self.matrices))?,
+            Parameter::Factor { which } => -with_whole(model, condensed, adjoint, *which, &mut self.matrices)?,
             Parameter::Speed => {
                 let Speed::Fixed(speed) = self.model.speed() else {
                     return Ok((f64::NAN, Reason::ZeroConstant));
                 };
-                let mut sum = -with_speed(model, condensed, adjoint, (speed, &mut self.matrices))?;
+                let mut sum = -with_speed(model, condensed, adjoint, speed, &mut self.matrices)?;
                 sum += self.by_centrifugal(speed);
                 for load in self.model.speed_loads() {
                     let slope = 2.0 * load.per_speed2 * speed;

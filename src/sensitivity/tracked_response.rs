@@ -252,7 +252,7 @@ impl<'a> TrackedResponse<'a> {
             let by_omega = point.residual_by_omega(omega)?;
             let (row, curvature) = peak_row(point, own, omega, &adjoint)?;
             self.last.curvature = curvature;
-            self.fill_frequency((&by_omega, &row), omega, unit, by_gauge);
+            self.fill_frequency(&by_omega, &row, omega, unit, by_gauge);
             self.last.gradient[m] = adjoint.by_omega * OMEGA_UNIT * omega;
         }
         let slope = self.by_parameter((model, condensed), p, &adjoint)?;
@@ -291,10 +291,10 @@ impl<'a> TrackedResponse<'a> {
         let partial = point.of_lambda((own, omega), amplitude, &none)?;
         let by_omega = point.residual_by_omega(omega)?;
         let models = (model, condensed);
-        let g = fold_gradient(point, (own, omega, length), &at, |adjoint| {
+        let g = fold_gradient(point, own, omega, length, &at, |adjoint| {
             self.by_parameter(models, p, adjoint)
         })?;
-        self.fill_frequency((&by_omega, &g.by_unknowns), omega, unit, 1.0);
+        self.fill_frequency(&by_omega, &g.by_unknowns, omega, unit, 1.0);
         self.last.amplitude = length * amplitude.norm();
         // The change of the amplitude with all unknowns: in a fold its adjoint at a fixed frequency does not exist.
         for (to, from) in self.last.gradient.iter_mut().zip(&by_motion) {
@@ -344,8 +344,8 @@ impl<'a> TrackedResponse<'a> {
             return Ok(scale);
         }
         self.fill_motions(point.jacobian());
-        let row = extremum_gradient(point, (own, omega, length), &at, OMEGA_UNIT * omega)?;
-        self.fill_frequency((&by_omega, &row), omega, unit, 1.0);
+        let row = extremum_gradient(point, own, omega, length, &at, OMEGA_UNIT * omega)?;
+        self.fill_frequency(&by_omega, &row, omega, unit, 1.0);
         self.last.amplitude = length * amplitude.norm();
         for (to, from) in self.last.gradient.iter_mut().zip(&by_motion) {
             *to = self.length * from;
@@ -416,7 +416,7 @@ impl<'a> TrackedResponse<'a> {
     }
 
     /// Writes the column of the frequency, and the row of its condition, the latter times a factor.
-    fn fill_frequency(&mut self, (column, row): (&[f64], &[f64]), omega: f64, unit: f64, factor: f64) {
+    fn fill_frequency(&mut self, column: &[f64], row: &[f64], omega: f64, unit: f64, factor: f64) {
         let (m, n) = (self.motions(), self.unknowns.len());
         for (x, r) in self.unknowns.matrix[m * n..m * n + m].iter_mut().zip(column) {
             *x = OMEGA_UNIT * omega * r / unit;

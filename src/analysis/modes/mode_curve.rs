@@ -94,9 +94,7 @@ pub(crate) fn alone(
         with_content.content = Content { base: 1, even: true };
     }
     let solver = &with_content;
-    match with_samples(solver, |solver| {
-        on_wave(model, solver, (range, entry), hooks, &interrupt)
-    }) {
+    match with_samples(solver, |solver| on_wave(model, solver, range, entry, hooks, &interrupt)) {
         Err(e) if e.status == Status::StoppedByCaller => stopped(model, solver, range),
         outcome => outcome.map(|branch| *branch),
     }
@@ -143,7 +141,8 @@ fn stopped(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>) -> Re
 fn on_wave(
     model: &Model,
     solver: &SolverOptions,
-    (range, entry): (&ModeOptions<'_>, Option<&ModeEntry<'_>>),
+    range: &ModeOptions<'_>,
+    entry: Option<&ModeEntry<'_>>,
     hooks: &mut Hooks<'_>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Sampled> {

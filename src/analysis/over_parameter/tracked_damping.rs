@@ -213,7 +213,7 @@ impl<'a> TrackedDamping<'a> {
         for t in &mut tangent {
             *t = -*t;
         }
-        let row = maximum_row(&mut problem, (&own, log10), &tangent, &lambda)?;
+        let row = maximum_row(&mut problem, &own, log10, &tangent, &lambda)?;
         self.last.curvature = dot(&row[..x], &tangent) + row[x];
         self.unknowns.matrix.fill(0.0);
         // Motions are in another unit than those of the condensed model.
@@ -266,12 +266,7 @@ impl<'a> TrackedDamping<'a> {
 }
 
 /// The derivatives of g = −λᵀ ∂R/∂a by the unknowns of the mode and by a.
-fn maximum_row(
-    problem: &mut Epmc<'_>,
-    (own, log10): (&[f64], f64),
-    tangent: &[f64],
-    lambda: &[f64],
-) -> Result<Vec<f64>> {
+fn maximum_row(problem: &mut Epmc<'_>, own: &[f64], log10: f64, tangent: &[f64], lambda: &[f64]) -> Result<Vec<f64>> {
     let x = own.len();
     let mut row = try_vec(x + 1, 0.0, CONTEXT)?;
     let mut there = Residual::new(x)?;

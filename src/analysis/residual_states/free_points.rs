@@ -59,7 +59,8 @@ impl<'a> FreePoints<'a> {
     pub fn along(
         model: &'a Model,
         branch: &'a Branch,
-        (solver, sweep): (&SolverOptions, Range),
+        solver: &SolverOptions,
+        sweep: Range,
         interrupt: &'a Interrupt<'a>,
     ) -> Self {
         Self {
@@ -108,7 +109,7 @@ impl<'a> FreePoints<'a> {
         for of_contact in stuck.sliders.chunk_by(|a, b| a.contact == b.contact) {
             let mut changes = false;
             for slider in of_contact {
-                let change = at.by_slider((slider.coordinate, slider.stiffness), omega)?;
+                let change = at.by_slider(slider.coordinate, slider.stiffness, omega)?;
                 let mut vibrations = change.chunks_exact(m.max(1)).map(|y| norm(&y[mean..]));
                 changes |= vibrations.any(|y| y > FREEDOM_ROUNDING);
             }
@@ -175,7 +176,7 @@ impl<'a> FreePoints<'a> {
         let known = self.held.take().filter(|held| sweep.is_some() && is_same(held));
         let mut held = match known {
             Some(held) => held,
-            None => self.prepared((model, sweep), sliders, (point, resolution))?,
+            None => self.prepared(model, sweep, sliders, point, resolution)?,
         };
         for slider in sliders {
             held.model.set_slider(slider.contact, slider.direction, slider.place)?;
@@ -187,9 +188,11 @@ impl<'a> FreePoints<'a> {
 
     fn prepared(
         &self,
-        (model, sweep): (&Model, Option<Range>),
+        model: &Model,
+        sweep: Option<Range>,
         sliders: &[StuckSlider],
-        (point, resolution): (usize, usize),
+        point: usize,
+        resolution: usize,
     ) -> Result<HeldContacts> {
         let branch = self.branch;
         let mut held = model.separate_clone()?;

@@ -163,7 +163,7 @@ impl<'a> HeldSliders<'a> {
         for slider in &self.sliders {
             try_push(&mut places, slider.place, CONTEXT)?;
         }
-        self.solution(&places, (set, motion, omega))
+        self.solution(&places, set, motion, omega)
     }
 
     /// The solution of [`Self::solve`]; `None` where it is not found.
@@ -195,10 +195,10 @@ impl<'a> HeldSliders<'a> {
         if !(omega > 0.5 * from.omega && omega < 2.0 * from.omega) {
             return fail!(NoConvergence, "a held slider is too far from the last one");
         }
-        self.solution(places, (&from.set, &motion, omega))
+        self.solution(places, &from.set, &motion, omega)
     }
 
-    fn solution(&self, places: &[f64], (set, motion, mut omega): (&HarmonicSet, &[f64], f64)) -> Result<HeldState> {
+    fn solution(&self, places: &[f64], set: &HarmonicSet, motion: &[f64], mut omega: f64) -> Result<HeldState> {
         let model = self.placed(&self.held, places)?;
         let condensed = Condensed::with_reference(&model, &self.solver, (omega, omega), None, self.interrupt)?;
         let length = condensed.length();
@@ -231,7 +231,7 @@ impl<'a> HeldSliders<'a> {
         let mut gradient = try_vec(count, 0.0, CONTEXT)?;
         by_places(&adjoint, &mut gradient)?;
         let omega_by_place = if is_peak {
-            peak_shift(&mut point, (&u, omega, adjoint.amplitude), count, by_places)?
+            peak_shift(&mut point, &u, omega, adjoint.amplitude, count, by_places)?
         } else {
             try_vec(count, 0.0, CONTEXT)?
         };
@@ -242,7 +242,7 @@ impl<'a> HeldSliders<'a> {
         let mut by_place = Vec::new();
         for (j, slider) in sliders.iter_mut().enumerate() {
             slider.place = places[j];
-            let mut change = point.by_slider((slider.coordinate, slider.stiffness), omega)?;
+            let mut change = point.by_slider(slider.coordinate, slider.stiffness, omega)?;
             for (c, t) in change.iter_mut().zip(&tangent) {
                 // The motions are in the solver's unit of lengths, the places are not.
                 *c += length * t * omega_by_place[j];

@@ -177,7 +177,7 @@ pub fn mode_band(
             let before = search.value(&best);
             for k in 0..sliders.len() {
                 let keep = (sliders.len() == 1 && sign > 0.0).then_some(&mut band.states);
-                best = search.along(best, (k, sign), keep)?;
+                best = search.along(best, k, sign, keep)?;
             }
             if (search.value(&best) - before).abs() <= MODE_BAND_ENOUGH * before.abs() {
                 break;
@@ -307,7 +307,8 @@ impl ModeBandSearch<'_> {
     fn along(
         &mut self,
         from: ModeBandState,
-        (k, sign): (usize, f64),
+        k: usize,
+        sign: f64,
         mut keep: Option<&mut Vec<ModeBandState>>,
     ) -> Result<ModeBandState> {
         let middle = from.places[k];
