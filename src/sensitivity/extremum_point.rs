@@ -17,13 +17,23 @@ use crate::sensitivity::central_differences::central_differences;
 use crate::sensitivity::fold_point::{Borders, FoldCondition};
 use crate::sensitivity::forced_point::ForcedPoint;
 
+/// The last column and row of the matrix B but for the unit of the frequency.
+pub(crate) struct ExtremumBorder<'a> {
+    /// Derivative of the residual by ω.
+    pub by_omega: &'a [f64],
+    /// Derivatives of the amplitude by the motions and by ω.
+    pub by_motion: &'a [f64],
+    pub slope: f64,
+}
+
 /// The matrix B at the point evaluated last, column-major, for a frequency unknown whose change by 1 changes ω by
 /// `unit`.
-pub(crate) fn extremum_matrix(
-    jacobian: &[f64],
-    (by_omega, by_motion, slope): (&[f64], &[f64], f64),
-    unit: f64,
-) -> Result<Vec<f64>> {
+pub(crate) fn extremum_matrix(jacobian: &[f64], border: &ExtremumBorder<'_>, unit: f64) -> Result<Vec<f64>> {
+    let &ExtremumBorder {
+        by_omega,
+        by_motion,
+        slope,
+    } = border;
     let m = by_motion.len();
     let n = m + 1;
     let mut matrix = try_vec(n * n, 0.0, CONTEXT)?;
@@ -90,8 +100,8 @@ impl ForcedPoint<'_> {
             *g = -length * (dot(column, w) + weight * a);
         }
         let none = try_vec(u.len(), 0.0, CONTEXT)?;
-        let of_equations = self.of_lambda((u, omega), 0.0.into(), w)?.by_omega;
-        let of_amplitude = self.of_lambda((u, omega), amplitude, &none)?.by_omega;
+        let of_equations = self.of_lambda(u, omega, 0.0.into(), w)?.by_omega;
+        let of_amplitude = self.of_lambda(u, omega, amplitude, &none)?.by_omega;
         gradient[u.len()] = of_equations - weight * of_amplitude;
         Ok(gradient)
     }

@@ -2,7 +2,7 @@
 
 use crate::analysis::forced::inside_start::in_sense_of;
 use crate::analysis::forced::odd_laws;
-use crate::analysis::forced::sampling::{Sampled, required, with_samples};
+use crate::analysis::forced::sampling::{SampledModel, required, with_samples};
 use crate::analysis::modes::mode_discretised::ModeDiscretised;
 use crate::analysis::modes::mode_entry::{EntryWay, ModeEntry};
 use crate::analysis::modes::mode_equations::LinearStart;
@@ -145,7 +145,7 @@ fn on_wave(
     entry: Option<&ModeEntry<'_>>,
     hooks: &mut Hooks<'_>,
     interrupt: &Interrupt<'_>,
-) -> Result<Sampled> {
+) -> Result<SampledModel> {
     interrupt.phase(Phase::Setup, 0.0)?;
     let start = boxed(|| ModeStart::new(model, solver, range, interrupt))?;
     let (linear, gauge) = (&start.linear, &start.gauge);

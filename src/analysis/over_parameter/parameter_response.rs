@@ -17,7 +17,8 @@ use crate::model::Model;
 use crate::options::{ForcedOptions, Range, Response, SolverOptions, check_responses};
 use crate::results::motions::recovery;
 use crate::results::{Branch, HigherPeak, ParameterData, Special};
-use crate::sensitivity::{Parameter, ResponsePoint, TrackedResponse, design};
+use crate::sensitivity::tracked::FirstMotion;
+use crate::sensitivity::{FollowedPoint, Parameter, ResponsePoint, TrackedResponse, design};
 
 /// Share of a frequency within which its peak or fold is sought.
 /// Kind: tuned; measured on: not recorded.
@@ -219,14 +220,20 @@ pub(crate) fn follow_from(
         samples: branch.samples_at(point).max(resolution.samples),
         ..*solver
     };
-    let mut tracked = TrackedResponse::new(
-        (model, parameter),
-        (&options, branch.response_dof(), range.response),
-        Range::new(range.start, range.stop),
-        (&start, own.length(), omega),
+    let followed = FollowedPoint {
+        model,
+        parameter,
+        response_dof: branch.response_dof(),
+        response: range.response,
         kind,
-        interrupt,
-    )?;
+    };
+    let first_motion = FirstMotion {
+        motion: &start,
+        length: own.length(),
+        omega,
+    };
+    let ends = Range::new(range.start, range.stop);
+    let mut tracked = TrackedResponse::new(followed, &options, ends, &first_motion, interrupt)?;
     let settings = settings(solver, range);
     let reduction = reduction::reduction_with(&resolution.condensed, first, solver, 0);
     let highest = if levels.is_automatic() { 0 } else { solver.harmonics };

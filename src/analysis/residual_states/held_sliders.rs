@@ -16,7 +16,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::model::Model;
 use crate::options::{Exchanged, Response, SolverOptions};
-use crate::sensitivity::{Adjoint, ForcedPoint, Parameter, TotalDerivative, peak_row, peak_shift};
+use crate::sensitivity::{Adjoint, ForcedPoint, Parameter, SampledModel, TotalDerivative, peak_row, peak_shift};
 use std::sync::Arc;
 
 const CONTEXT: &str = "a response with held sliders";
@@ -216,8 +216,11 @@ impl<'a> HeldSliders<'a> {
         let at_frequency = model.at_frequency(omega)?;
         let samples = self.solver.samples;
         let by_places = |adjoint: &Adjoint, values: &mut [f64]| -> Result<()> {
-            let solution = (&condensed, samples);
-            let mut total = TotalDerivative::new((&model, &*at_frequency), solution, adjoint, self.interrupt)?;
+            let solution = SampledModel {
+                condensed: &condensed,
+                samples,
+            };
+            let mut total = TotalDerivative::new(&model, &at_frequency, solution, adjoint, self.interrupt)?;
             for (value, slider) in values.iter_mut().zip(&self.sliders) {
                 let parameter = Parameter::Contact {
                     constant: Constant::Slider(slider.direction),
@@ -284,9 +287,9 @@ impl<'a> HeldSliders<'a> {
         'a: 'c,
     {
         let samples = self.solver.samples;
-        let point = ForcedPoint::new(condensed, (self.response_dof, samples), omega, self.interrupt)?;
+        let point = ForcedPoint::new(condensed, self.response_dof, samples, omega, self.interrupt)?;
         match &self.response {
-            Some(response) => point.watching((response, self.response_dof), samples),
+            Some(response) => point.watching(response, self.response_dof, samples),
             None => Ok(point),
         }
     }

@@ -14,6 +14,7 @@ use crate::model::Model;
 use crate::options::{ModeChoice, ModeOptions, SolverOptions};
 use crate::results::Branch;
 use crate::results::stored::mode_branch::ModeField;
+use crate::sensitivity::SampledModel;
 
 const CONTEXT: &str = "the band of a nonlinear mode";
 
@@ -221,8 +222,8 @@ fn sliders_of(
     branch.check_model(model)?;
     interrupt.phase(Phase::Results, 0.0)?;
     let at_frequency = model.at_frequency(omega)?;
-    let solution = (branch.condensed_at(point), branch.samples_at(point));
-    let mut stuck = stuck_contacts(&at_frequency, solution, (motion, omega), interrupt)?;
+    let solution = SampledModel::at(branch, point);
+    let mut stuck = stuck_contacts(&at_frequency, solution, motion, omega, interrupt)?;
     if !stuck.others_vibrate {
         stuck.sliders.clear();
     }
@@ -286,8 +287,8 @@ impl ModeBandSearch<'_> {
             return Ok(None);
         };
         let omega = found.omega()[0];
-        let solution = (found.condensed_at(0), found.samples_at(0));
-        let stuck = stuck_contacts(&model, solution, (motion, omega), self.interrupt)?;
+        let solution = SampledModel::at(&found, 0);
+        let stuck = stuck_contacts(&model, solution, motion, omega, self.interrupt)?;
         let slider = &self.sliders[k];
         let own = |one: &&StuckSlider| (one.contact, one.direction) == (slider.contact, slider.direction);
         let place = stuck.sliders.iter().find(own).map(|one| one.place);

@@ -10,7 +10,7 @@ use crate::model::Model;
 use crate::model::matrices::speed::Speed;
 use crate::options::{Duty, ForcedOptions, LifeFollow, LifeOptions, SolverOptions};
 use crate::results::{Branch, Special};
-use crate::sensitivity::{Adjoint, ForcedPoint, Parameter, TotalDerivative, work_at_fixed_motion};
+use crate::sensitivity::{Adjoint, ForcedPoint, Parameter, SampledModel, TotalDerivative, work_at_fixed_motion};
 use num_complex::Complex64;
 use std::rc::Rc;
 
@@ -490,9 +490,9 @@ impl<'a> WornStates<'a> {
         };
         let at_frequency = model.at_frequency(omega)?;
         let parameters = self.parameters(model)?;
-        let models = (model, &*at_frequency);
+        let solution = SampledModel { condensed, samples };
         let gradient = |adjoint: &Adjoint, values: &mut [f64]| -> Result<()> {
-            let mut total = TotalDerivative::new(models, (condensed, samples), adjoint, interrupt)?;
+            let mut total = TotalDerivative::new(model, &at_frequency, solution, adjoint, interrupt)?;
             for (k, (value, parameter)) in values.iter_mut().zip(&parameters).enumerate() {
                 let (by, _) = total.by(parameter)?;
                 *value = if by.is_finite() {
@@ -503,7 +503,7 @@ impl<'a> WornStates<'a> {
             }
             Ok(())
         };
-        let mut at = ForcedPoint::new(condensed, (branch.response_dof(), samples), omega, interrupt)?;
+        let mut at = ForcedPoint::new(condensed, branch.response_dof(), samples, omega, interrupt)?;
         let Some(adjoint) = at.adjoint(u, omega)? else {
             return fail!(Singular, "the vibration is at a fold, where wear would make it jump");
         };
@@ -517,11 +517,12 @@ impl<'a> WornStates<'a> {
             let Some(law) = law.filter(|_| found.slips[j]) else {
                 continue;
             };
-            let (work, adjoint) = at.work((u, omega), (law, samples))?;
+            let (work, adjoint) = at.work(u, omega, law, samples)?;
             found.works[j] = work.max(0.0);
             gradient(&adjoint, &mut by_load)?;
-            let own = (&*at_frequency, wear.contact, constant(model, wear.contact));
-            by_load[j] += self.per_load(model, j) * work_at_fixed_motion(own, condensed, samples, &adjoint, interrupt)?;
+            let own = constant(model, wear.contact);
+            let of_load = work_at_fixed_motion(&at_frequency, wear.contact, own, solution, &adjoint, interrupt)?;
+            by_load[j] += self.per_load(model, j) * of_load;
             for (k, by) in by_load.iter().enumerate() {
                 let moves = peak.map_or(0.0, |shift| shift[k] * adjoint.by_omega);
                 found.work_by_load[k * n + j] = by + moves;
