@@ -116,8 +116,8 @@ pub(crate) fn follow(
         length: own.length(),
         omega,
     };
-    let ends = Range::new(range.start, range.stop);
-    let mut tracked = TrackedDamping::new(followed, &options, ends, &start, at, to, interrupt)?;
+    let values = Range::new(range.start, range.stop);
+    let mut tracked = TrackedDamping::new(followed, &options, values, &start, at, to, interrupt)?;
     let settings = settings(solver, range);
     let reduction = reduction::reduction_with(&resolution.condensed, first, solver, 0);
     let highest = if levels.is_automatic() { 0 } else { solver.harmonics };

@@ -232,8 +232,8 @@ pub(crate) fn follow_from(
         length: own.length(),
         omega,
     };
-    let ends = Range::new(range.start, range.stop);
-    let mut tracked = TrackedResponse::new(followed, &options, ends, &first_motion, interrupt)?;
+    let values = Range::new(range.start, range.stop);
+    let mut tracked = TrackedResponse::new(followed, &options, values, &first_motion, interrupt)?;
     let settings = settings(solver, range);
     let reduction = reduction::reduction_with(&resolution.condensed, first, solver, 0);
     let highest = if levels.is_automatic() { 0 } else { solver.harmonics };
