@@ -111,13 +111,7 @@ impl TrackedResponse<'_> {
             self.by_parameter(place, adjoint)
         })?;
         self.fill_frequency(&by_omega, &g.by_unknowns, omega, unit, 1.0);
-        self.last.amplitude = length * amplitude.norm();
-        // The change of the amplitude with all unknowns: in a fold its adjoint at a fixed frequency does not exist.
-        for (to, from) in self.last.gradient.iter_mut().zip(&by_motion) {
-            *to = self.length * from;
-        }
-        self.last.gradient[m] = partial.by_omega * OMEGA_UNIT * omega;
-        self.last.gradient[n] = self.by_parameter(place, &partial)?;
+        self.note_amplitude(place, length * amplitude.norm(), &by_motion, &partial)?;
         // The adjoint of motions, frequency and condition together.
         let mut system = Lu::new(n, 1)?;
         system.matrix().copy_from_slice(&self.unknowns.matrix);
@@ -146,7 +140,7 @@ impl TrackedResponse<'_> {
         values: &mut [f64],
     ) -> Result<f64> {
         let &Place { at, own, omega, .. } = place;
-        let (m, n) = (own.len(), values.len());
+        let m = own.len();
         let length = at.condensed.length();
         let unit = self.length / length;
         let (by_motion, amplitude) = point.amplitude(own, omega)?;
@@ -168,18 +162,32 @@ impl TrackedResponse<'_> {
         self.fill_motions(point.jacobian());
         let row = extremum_gradient(point, own, omega, length, &condition, OMEGA_UNIT * omega)?;
         self.fill_frequency(&by_omega, &row, omega, unit, 1.0);
-        self.last.amplitude = length * amplitude.norm();
-        for (to, from) in self.last.gradient.iter_mut().zip(&by_motion) {
-            *to = self.length * from;
-        }
-        self.last.gradient[m] = partial.by_omega * OMEGA_UNIT * omega;
-        self.last.gradient[n] = self.by_parameter(place, &partial)?;
+        self.note_amplitude(place, length * amplitude.norm(), &by_motion, &partial)?;
         // The amplitude does not change with the frequency there, so that its derivative is that at a fixed one.
         self.last.d_amplitude = match point.adjoint(own, omega)? {
             Some(adjoint) => self.by_parameter(place, &adjoint)?,
             None => f64::NAN,
         };
         Ok(scale)
+    }
+
+    /// Keeps the amplitude, and its change with all unknowns and the parameter one by one: where Newton's matrix is singular its
+    /// adjoint at a fixed frequency does not exist.
+    fn note_amplitude(
+        &mut self,
+        place: &Place<'_>,
+        amplitude: f64,
+        by_motion: &[f64],
+        partial: &Adjoint,
+    ) -> Result<()> {
+        let m = by_motion.len();
+        self.last.amplitude = amplitude;
+        for (to, from) in self.last.gradient.iter_mut().zip(by_motion) {
+            *to = self.length * from;
+        }
+        self.last.gradient[m] = partial.by_omega * OMEGA_UNIT * place.omega;
+        self.last.gradient[m + 1] = self.by_parameter(place, partial)?;
+        Ok(())
     }
 
     /// The condition of an extremum at the point linearised last.
