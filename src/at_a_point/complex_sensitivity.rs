@@ -8,7 +8,9 @@ use crate::model::Model;
 use crate::options::Range;
 use crate::options::{Measure, Response};
 use crate::results::Branch;
-use crate::sensitivity::{ForcedPoint, Parameter, Reason, TotalDerivative, WaveMatrices, contact_at_onset};
+use crate::sensitivity::{
+    ForcedPoint, Parameter, Reason, SampledModel, TotalDerivative, WaveMatrices, contact_at_onset,
+};
 use num_complex::Complex64;
 use std::borrow::Cow;
 
@@ -106,7 +108,8 @@ impl<'a> Equations<'a> {
     /// The equations of a point that watch a response; the last ones are used again where they are valid.
     fn of(
         &mut self,
-        (branch, point): (&'a Branch, usize),
+        branch: &'a Branch,
+        point: usize,
         response: &Response<'_>,
         interrupt: &'a Interrupt<'a>,
     ) -> Result<&mut ForcedPoint<'a>> {
@@ -115,8 +118,8 @@ impl<'a> Equations<'a> {
             Some(at) if at.are_of(condensed, samples) => at,
             _ => {
                 let dof = branch.response_dof();
-                let at = ForcedPoint::over(condensed, (dof, samples), self.range, interrupt)?;
-                at.watching((response, dof), samples)?
+                let at = ForcedPoint::over(condensed, dof, samples, self.range, interrupt)?;
+                at.watching(response, dof, samples)?
             }
         };
         Ok(self.at.insert(at))
@@ -135,7 +138,7 @@ impl<'a> Equations<'a> {
         let Some((omega, motion)) = branch.omega_at(point).zip(branch.motion_at(point)) else {
             return fail!(Index, "point = {point}, needs 0 .. {}", branch.stored());
         };
-        self.of((branch, point), response, interrupt)?
+        self.of(branch, point, response, interrupt)?
             .complex_amplitude(motion, omega)
     }
 }
@@ -170,7 +173,7 @@ pub(crate) fn complex_at<'a>(
              harmonics, tolerance = 0"
         );
     }
-    let at = equations.of((branch, point), response, interrupt)?;
+    let at = equations.of(branch, point, response, interrupt)?;
     let nothing = Complex64::new(f64::NAN, f64::NAN);
     let mut found = ComplexSensitivities {
         value: nothing,
@@ -187,25 +190,24 @@ pub(crate) fn complex_at<'a>(
     }
     found.by_omega = Complex64::new(real.by_omega, imaginary.by_omega);
     let at_frequency = model.at_frequency(omega)?;
-    let solution = (condensed, samples);
+    let solution = SampledModel { condensed, samples };
     if two_sided && let Some(contact) = contact_at_onset(&at_frequency, solution, &real, interrupt)? {
         found.reasons.fill(Reason::OnsetOfSlip { contact });
         return Ok(found);
     }
-    let models = (model, &*at_frequency);
     // The matrices at a frequency hold there alone.
     let mut own = WaveMatrices::default();
-    let matrices = match at_frequency {
+    let matrices = match &at_frequency {
         Cow::Borrowed(_) => matrices,
         Cow::Owned(_) => &mut own,
     };
-    let of_real = TotalDerivative::new(models, solution, &real, interrupt)?;
+    let of_real = TotalDerivative::new(model, &at_frequency, solution, &real, interrupt)?;
     let mut of_real = of_real.with_matrices(core::mem::take(matrices));
     for ((value, reason), parameter) in found.values.iter_mut().zip(&mut found.reasons).zip(parameters) {
         (value.re, *reason) = of_real.by(parameter)?;
     }
     *matrices = of_real.into_matrices();
-    let of_imaginary = TotalDerivative::new(models, solution, &imaginary, interrupt)?;
+    let of_imaginary = TotalDerivative::new(model, &at_frequency, solution, &imaginary, interrupt)?;
     let mut of_imaginary = of_imaginary.with_matrices(core::mem::take(matrices));
     for (value, parameter) in found.values.iter_mut().zip(parameters) {
         value.im = of_imaginary.by(parameter)?.0;

@@ -65,7 +65,7 @@ pub fn floquet(
             quick: false,
         };
         let mut kept = KeptModes::default();
-        Ok(floquet_of(model, &motion, options, (hooks, &mut kept), &interrupt)?.stability)
+        Ok(floquet_of(model, &motion, options, hooks, &mut kept, &interrupt)?.stability)
     };
     match found() {
         Err(e) if e.status == Status::StoppedByCaller => Ok(Floquet::stopped(omega)),

@@ -115,7 +115,8 @@ fn forced_residual_of_independent(
 
     let assembled = assemble(
         (model, &at_frequency, omega),
-        (&dynamic, &contact),
+        &dynamic,
+        &contact,
         x,
         (r, jacobian.as_deref_mut(), d_omega.as_deref_mut()),
         interrupt,
@@ -136,7 +137,8 @@ fn forced_residual_of_independent(
 /// Fills the arrays with the sum of the terms of structure, contacts and forces.
 fn assemble(
     (model, at_frequency, omega): (&Model, &Model, f64),
-    (dynamic, contact): (&[Dynamic], &ContactTerms),
+    dynamic: &[Dynamic],
+    contact: &ContactTerms,
     x: &[Complex64],
     (r, mut jacobian, mut d_omega): ResidualArrays<'_>,
     interrupt: &Interrupt<'_>,
@@ -284,13 +286,7 @@ impl ContactTerms {
                 }
                 try_push(&mut rows, own, CONTEXT)?;
             }
-            let mut evaluation = evaluate(
-                (contact, derivatives),
-                &set,
-                (solver.samples, omega),
-                &packed,
-                interrupt,
-            )?;
+            let mut evaluation = evaluate(contact, derivatives, &set, (solver.samples, omega), &packed, interrupt)?;
             if let Some(growth) = model.growth_of_load(number, omega).filter(|_| derivatives) {
                 // ∂f/∂ω = (∂f/∂ln N) ∂ln N/∂ω
                 let by_load = if contact.load_scales_motion() {
@@ -404,7 +400,8 @@ impl Block<'_> {
 
 /// A law in the caller's units at packed motions, with its Jacobian or its force alone.
 fn evaluate(
-    (contact, jacobian): (&Contact, bool),
+    contact: &Contact,
+    jacobian: bool,
     set: &HarmonicSet,
     (samples, omega): (usize, f64),
     packed: &[f64],
@@ -493,13 +490,7 @@ pub fn contact_evaluate_with(
             set.set(packed, i, z);
         }
     }
-    let evaluation = evaluate(
-        (contact, jacobian.is_some()),
-        &set,
-        (samples, omega),
-        &packed,
-        interrupt,
-    )?;
+    let evaluation = evaluate(contact, jacobian.is_some(), &set, (samples, omega), &packed, interrupt)?;
     // From here on all of the arrays is written, or none.
     interrupt.check_before(evaluation.jacobian.len() as u64)?;
     for (force, packed) in force.chunks_exact_mut(count).zip(evaluation.force.chunks_exact(m)) {

@@ -5,8 +5,8 @@ use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
 use crate::results::{Branch, ResponseSeries};
 use crate::sensitivity::{
-    Adjoint, ForcedPoint, ModePointAdjoint, ModeQuantity, Parameter, Reason, TotalDerivative, contact_at_onset,
-    peak_shift,
+    Adjoint, ForcedPoint, ModePointAdjoint, ModeQuantity, Parameter, Reason, SampledModel, TotalDerivative,
+    contact_at_onset, peak_shift,
 };
 
 const CONTEXT: &str = "the sensitivities";
@@ -104,8 +104,7 @@ pub fn sensitivity_with(
         _ => model,
     };
     let at_frequency = model.at_frequency(omega)?;
-    let solution = (branch.condensed_at(point), branch.samples_at(point));
-    let models = (model, &*at_frequency);
+    let solution = SampledModel::at(branch, point);
     let absent = |reason| -> Result<Sensitivities> {
         Ok(Sensitivities {
             values: try_vec(parameters.len(), f64::NAN, CONTEXT)?,
@@ -122,20 +121,20 @@ pub fn sensitivity_with(
             _ => ModeQuantity::Damping,
         };
         let at = ModePointAdjoint {
-            condensed: solution.0,
+            condensed: solution.condensed,
             linear: &data.linear,
             gauge: &data.gauge,
-            samples: solution.1,
+            samples: solution.samples,
             motion,
             omega,
             point: at,
         };
         at.solve(quantity, interrupt)?
     } else {
-        let responses = (branch.response_dof(), solution.1);
-        let at = ForcedPoint::new(solution.0, responses, omega, interrupt)?;
+        let SampledModel { condensed, samples } = solution;
+        let at = ForcedPoint::new(condensed, branch.response_dof(), samples, omega, interrupt)?;
         let at = match watched(branch, of) {
-            Some(series) => at.watching((&series.response(), branch.response_dof()), solution.1)?,
+            Some(series) => at.watching(&series.response(), branch.response_dof(), samples)?,
             None => at,
         };
         forced.insert(at).adjoint(motion, omega)?
@@ -148,7 +147,7 @@ pub fn sensitivity_with(
     }
     let mut found = absent(Reason::Exists)?;
     let derivatives = |adjoint: &Adjoint, values: &mut [f64], reasons: &mut [Reason]| -> Result<()> {
-        let mut total = TotalDerivative::new(models, solution, adjoint, interrupt)?;
+        let mut total = TotalDerivative::new(model, &at_frequency, solution, adjoint, interrupt)?;
         for ((value, reason), parameter) in values.iter_mut().zip(reasons).zip(parameters) {
             (*value, *reason) = total.by(parameter)?;
         }
@@ -158,7 +157,7 @@ pub fn sensitivity_with(
         Some(at) if is_frequency(of) => {
             let mut reasons = try_copy(&found.reasons, CONTEXT)?;
             let amplitude = peak_amplitude(branch, of, point);
-            found.values = peak_shift(at, (motion, omega, amplitude), parameters.len(), |adjoint, values| {
+            found.values = peak_shift(at, motion, omega, amplitude, parameters.len(), |adjoint, values| {
                 derivatives(adjoint, values, &mut reasons)
             })?;
             found.reasons = reasons;

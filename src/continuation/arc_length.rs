@@ -312,7 +312,7 @@ impl Continuation {
                         }
                         continue;
                     }
-                    if let Some(share) = self.crossed(problem, (&point, length), known, interrupt)? {
+                    if let Some(share) = self.crossed(problem, &point, length, known, interrupt)? {
                         self.steps.at_most(APPROACH * share * length);
                         continue;
                     }
@@ -332,7 +332,7 @@ impl Continuation {
                     // The code below uses the corrector again.
                     let failure = self.corrector.failure();
                     if length <= CORNER_STEP
-                        && let Some(point) = self.turn_corner(problem, metric, (length, length), interrupt)?
+                        && let Some(point) = self.turn_corner(problem, metric, length, length, interrupt)?
                     {
                         return self.accept(point, None);
                     }
@@ -465,7 +465,7 @@ impl Continuation {
         let back = cosine(along, chord, lengths.0) < STRAIGHT;
         let far = chord > 3.0 * step;
         let size = norm(point.unknowns());
-        let error = self.prediction_error(&self.memory.scratch, (&point, size), amplitude);
+        let error = self.prediction_error(&self.memory.scratch, &point, size, amplitude);
         // A smooth curve that another one crosses changes its sense, too, and a step over the crossing is well predicted.
         let crossed = self.steps.crosses_branches() && error <= CROSSED.0 && kept >= CROSSED.1;
         let jumped = jumped && !crossed;
@@ -490,7 +490,7 @@ impl Continuation {
     }
 
     /// Relative error of the prediction in the motion and in the observed amplitude.
-    fn prediction_error(&self, predicted: &[f64], (point, size): (&Point, f64), amplitude: Complex64) -> f64 {
+    fn prediction_error(&self, predicted: &[f64], point: &Point, size: f64, amplitude: Complex64) -> f64 {
         let relative = |difference: f64, size: f64| if difference == 0.0 { 0.0 } else { difference / size };
         let n = predicted.len() - 1;
         let squares = predicted[..n].iter().zip(&point.v).map(|(a, b)| (a - b) * (a - b));

@@ -229,13 +229,13 @@ impl Corrector {
             let is_last = iteration > self.limits.min_iterations && residual <= self.attainable();
             if is_last
                 && self.may_end_early
-                && self.ends_by_earlier_factors(problem, (v, last[1]), (metric, row), interrupt)?
+                && self.ends_by_earlier_factors(problem, v, last[1], (metric, row), interrupt)?
             {
                 if iteration == 1 {
                     let sizes = [residual, self.step_length(metric) / norm(&v[..n])];
                     self.contraction.measure(last, sizes);
                 }
-                return self.finish(problem, v, metric, (iteration, residual));
+                return self.finish(problem, v, metric, iteration, residual);
             }
             // The damping test compares steps by one matrix, that of the iteration: an iterative solution is by it with any factors.
             let reuse = iteration > 0 && (!damped || !self.system.is_direct());
@@ -272,10 +272,10 @@ impl Corrector {
                 } else {
                     None
                 };
-                if !self.solve_for_tangent(problem, (metric, row), slope, interrupt)? {
+                if !self.solve_for_tangent(problem, metric, row, slope, interrupt)? {
                     return Ok(Outcome::Failed);
                 }
-                return self.finish(problem, v, metric, (iteration, foreseen.unwrap_or(residual)));
+                return self.finish(problem, v, metric, iteration, foreseen.unwrap_or(residual));
             }
             // Where a near-rigid contact begins to close, the residual falls while small steps are dominated by rounding. A step found by
             // iteration leaves a share of the residual, which near a singular matrix is a long step.
@@ -437,7 +437,8 @@ impl Corrector {
         problem: &mut dyn Problem,
         v: &mut [f64],
         metric: Metric,
-        (iterations, residual): (usize, f64),
+        iterations: usize,
+        residual: f64,
     ) -> Result<Outcome> {
         let n = v.len() - 1;
         let mut tangent = core::mem::take(&mut self.memory.unused);
@@ -473,7 +474,8 @@ impl Corrector {
     fn solve_for_tangent(
         &mut self,
         problem: &mut dyn Problem,
-        (metric, row): (Metric, &[f64]),
+        metric: Metric,
+        row: &[f64],
         slope: Option<[f64; 3]>,
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
@@ -519,7 +521,7 @@ impl Corrector {
             return Ok(None);
         }
         self.update(problem, metric, row, interrupt)?;
-        if !self.factor(problem, interrupt)? || !self.solve_for_tangent(problem, (metric, row), None, interrupt)? {
+        if !self.factor(problem, interrupt)? || !self.solve_for_tangent(problem, metric, row, None, interrupt)? {
             return Ok(None);
         }
         self.unit_tangent(metric, tangent);

@@ -105,14 +105,15 @@ pub fn solve_within(
 ) -> Result<First> {
     let tolerance = settings.steps.tolerance(settings.tolerance);
     let mut corrector = Corrector::new(problem.size(), tolerance, settings.max_iterations)?;
-    let mut first = try_each_way(problem, (settings, effort), &mut corrector, interrupt)?;
+    let mut first = try_each_way(problem, settings, effort, &mut corrector, interrupt)?;
     first.point.iterations = corrector.steps_taken();
     Ok(first)
 }
 
 fn try_each_way(
     problem: &mut dyn Problem,
-    (settings, effort): (&Settings, Effort),
+    settings: &Settings,
+    effort: Effort,
     corrector: &mut Corrector,
     interrupt: &Interrupt<'_>,
 ) -> Result<First> {
@@ -144,7 +145,7 @@ fn try_each_way(
         }
         // The homotopy is more reliable than a poorer initial guess.
         if let Some(u) = &homotopy_guess {
-            let reached = homotopy(problem, (settings, effort), u, corrector, interrupt);
+            let reached = homotopy(problem, settings, effort, u, corrector, interrupt);
             if let Some(first) = attempt(reached, None, &mut failure)? {
                 return Ok(first);
             }
@@ -152,13 +153,13 @@ fn try_each_way(
         }
     }
     if problem.is_bounded() {
-        let reached = try_anchors(problem, (settings, effort), corrector, interrupt);
+        let reached = try_anchors(problem, settings, effort, corrector, interrupt);
         if let Some(first) = attempt(reached, None, &mut failure)? {
             return Ok(first);
         }
     }
     if let Some(by) = problem.softened_by() {
-        let reached = from_softened(problem, (settings, effort), by, corrector, interrupt);
+        let reached = from_softened(problem, settings, effort, by, corrector, interrupt);
         problem.soften(0.0);
         if let Some(v) = attempt(reached, None, &mut failure)?
             && let Some(first) = finish(problem, settings, v, Way::Stiffened, corrector, interrupt)?
@@ -204,7 +205,8 @@ fn at_fixed(
 /// Follows the problem's homotopy, from near `u` to the given problem.
 fn homotopy(
     problem: &mut dyn Problem,
-    (settings, effort): (&Settings, Effort),
+    settings: &Settings,
+    effort: Effort,
     u: &[f64],
     corrector: &mut Corrector,
     interrupt: &Interrupt<'_>,
@@ -219,7 +221,7 @@ fn homotopy(
         ..*settings
     };
     let points = (effort, homotopy.patience);
-    let reached = follow(&mut *homotopy.problem, (&path, points), u, corrector, interrupt);
+    let reached = follow(&mut *homotopy.problem, &path, points, u, corrector, interrupt);
     drop(homotopy);
     let Reached::End(v) = reached? else { return Ok(None) };
     finish(problem, settings, v, Way::Homotopy, corrector, interrupt)
@@ -258,7 +260,8 @@ const ANCHORS: [(InitialGuess, f64); 3] = [
 /// Tries homotopies from one anchor after the other.
 fn try_anchors(
     problem: &mut dyn Problem,
-    (settings, effort): (&Settings, Effort),
+    settings: &Settings,
+    effort: Effort,
     corrector: &mut Corrector,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<First>> {
@@ -280,7 +283,8 @@ fn try_anchors(
         let mut homotopy = NewtonHomotopy::new(problem, p, &anchor)?;
         let reached = match follow(
             &mut homotopy,
-            (&path, (effort, effort.points)),
+            &path,
+            (effort, effort.points),
             &anchor,
             corrector,
             interrupt,
@@ -301,15 +305,16 @@ fn try_anchors(
 /// Solves with contacts as soft as `by` says, ln σ, and follows the solution until they are as stiff as they are.
 fn from_softened(
     problem: &mut dyn Problem,
-    (settings, effort): (&Settings, Effort),
+    settings: &Settings,
+    effort: Effort,
     by: f64,
     corrector: &mut Corrector,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<Vec<f64>>> {
     problem.soften(by);
     let mut u = try_vec(problem.size(), 0.0, CONTEXT)?;
-    let first = match homotopy(problem, (settings, effort), &u, corrector, interrupt)? {
-        None => try_anchors(problem, (settings, effort), corrector, interrupt)?,
+    let first = match homotopy(problem, settings, effort, &u, corrector, interrupt)? {
+        None => try_anchors(problem, settings, effort, corrector, interrupt)?,
         first => first,
     };
     let Some(first) = first else { return Ok(None) };
@@ -325,7 +330,7 @@ fn from_softened(
     };
     let points = (effort, path.patience);
     Ok(
-        match follow(&mut *path.problem, (&along, points), &u, corrector, interrupt)? {
+        match follow(&mut *path.problem, &along, points, &u, corrector, interrupt)? {
             Reached::End(v) | Reached::Part(v) => Some(v),
             Reached::Nothing => None,
         },
@@ -344,7 +349,8 @@ enum Reached {
 /// Follows a homotopy with bounded work; at most `patience` successive points may make no progress.
 fn follow(
     problem: &mut dyn Problem,
-    (settings, (effort, patience)): (&Settings, (Effort, usize)),
+    settings: &Settings,
+    (effort, patience): (Effort, usize),
     u: &[f64],
     corrector: &mut Corrector,
     interrupt: &Interrupt<'_>,

@@ -147,7 +147,7 @@ impl Locator {
     ) -> Result<Option<Point>> {
         let mut found = None;
         for &margin in self.settings.steps.margins() {
-            let (point, is_root) = self.search(problem, (kind, margin), (a, b), interrupt)?;
+            let (point, is_root) = self.search(problem, kind, margin, (a, b), interrupt)?;
             found = point.or(found);
             if is_root {
                 break;
@@ -161,7 +161,8 @@ impl Locator {
     fn search(
         &mut self,
         problem: &mut dyn Problem,
-        (kind, margin): (SpecialPoint, f64),
+        kind: SpecialPoint,
+        margin: f64,
         (a, b): (&Point, &Point),
         interrupt: &Interrupt<'_>,
     ) -> Result<(Option<Point>, bool)> {

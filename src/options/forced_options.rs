@@ -72,7 +72,7 @@ impl ForcedOptions<'_> {
                 self.omega_start
             );
         }
-        check_tree((self.branches, MOST_SOUGHT), self.branch_depth, self.most_branches)?;
+        check_tree(self.branches, MOST_SOUGHT, self.branch_depth, self.most_branches)?;
         let (low, high) = (
             self.omega_start.min(self.omega_stop),
             self.omega_start.max(self.omega_stop),

@@ -188,7 +188,7 @@ impl ModeOptions<'_> {
                 );
             }
         }
-        check_tree((self.branches, 1), self.branch_depth, self.most_branches)?;
+        check_tree(self.branches, 1, self.branch_depth, self.most_branches)?;
         if let Some(guess) = &self.guess {
             let rows = guess.motion.len() / ndof.max(1);
             if rows < 2 || rows * ndof != guess.motion.len() || rows > MAX_HARMONIC + 1 {

@@ -56,7 +56,7 @@ impl RunUpOptions {
     /// # Errors
     /// `Argument`, `NotFinite` or `Index`, naming the field, its value and its range.
     pub fn check(&self, ndof: usize) -> Result<()> {
-        check_passage((self.omega_start, self.omega_stop), self.rate)?;
+        check_passage(self.omega_start, self.omega_stop, self.rate)?;
         if let Some(dof) = self.dof.filter(|&dof| dof >= ndof) {
             return fail!(Index, "dof = {dof}, needs 0 .. {}", ndof.saturating_sub(1));
         }

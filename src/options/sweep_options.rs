@@ -60,7 +60,7 @@ impl<'a> SweepOptions<'a> {
     /// # Errors
     /// `Argument`, `NotFinite`, `Index` or `Dimension`, naming the field, its value and its range.
     pub fn check(&self, ndof: usize) -> Result<()> {
-        check_passage((self.omega_start, self.omega_stop), self.rate)?;
+        check_passage(self.omega_start, self.omega_stop, self.rate)?;
         if self.dof >= ndof {
             return fail!(Index, "dof = {}, needs 0 .. {}", self.dof, ndof.saturating_sub(1));
         }
@@ -80,7 +80,7 @@ impl<'a> SweepOptions<'a> {
 ///
 /// # Errors
 /// `Argument` or `NotFinite`, naming the field, its value and its range.
-pub(super) fn check_passage((start, stop): (f64, f64), rate: f64) -> Result<()> {
+pub(super) fn check_passage(start: f64, stop: f64, rate: f64) -> Result<()> {
     for (name, value) in [("omega_start", start), ("omega_stop", stop), ("rate", rate)] {
         if !value.is_finite() {
             return fail!(NotFinite, "{name} = {value}, needs a finite number > 0");

@@ -21,7 +21,7 @@ pub(crate) fn size_of_tree(depth: usize, most: usize) -> (usize, usize) {
 ///
 /// # Errors
 /// `Argument`, naming the field, its value and its range.
-pub(super) fn check_tree((branches, largest): (usize, usize), depth: usize, most: usize) -> Result<()> {
+pub(super) fn check_tree(branches: usize, largest: usize, depth: usize, most: usize) -> Result<()> {
     if branches > largest {
         return fail!(Argument, "branches = {branches}, needs 0 .. {largest}");
     }

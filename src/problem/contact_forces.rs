@@ -108,7 +108,7 @@ impl<'a> ContactForces<'a> {
     /// # Errors
     /// `OutOfMemory`.
     pub fn unchecked(condensed: &'a Condensed, samples: usize, interrupt: &'a Interrupt<'a>) -> Result<Self> {
-        Self::with((condensed, samples), false, interrupt)
+        Self::with(condensed, samples, false, interrupt)
     }
 
     /// The laws as [`Self::unchecked`] makes them, for forces without Jacobians, which saves most of an evaluation
@@ -117,10 +117,10 @@ impl<'a> ContactForces<'a> {
     /// # Errors
     /// `OutOfMemory`.
     pub fn forces_alone(condensed: &'a Condensed, samples: usize, interrupt: &'a Interrupt<'a>) -> Result<Self> {
-        Self::with((condensed, samples), true, interrupt)
+        Self::with(condensed, samples, true, interrupt)
     }
 
-    fn with((condensed, samples): (&'a Condensed, usize), alone: bool, interrupt: &'a Interrupt<'a>) -> Result<Self> {
+    fn with(condensed: &'a Condensed, samples: usize, alone: bool, interrupt: &'a Interrupt<'a>) -> Result<Self> {
         const CONTEXT: &str = "the contact forces";
         // A linear problem has no contact to evaluate, and its harmonics need not be equidistant.
         let linear = condensed.coordinates() == 0;
@@ -275,7 +275,7 @@ impl<'a> ContactForces<'a> {
                 continue;
             };
             let here = assembled.at(omega);
-            let y = gather_scaled(at, (m, here.of_motion), &self.memory.scaled, &mut self.memory.gathered);
+            let y = gather_scaled(at, m, here.of_motion, &self.memory.scaled, &mut self.memory.gathered);
             if at.len() == 1 && (prepared != at[0] || here.of_motion.is_some()) {
                 self.evaluator.prepare(set, y, self.interrupt)?;
                 prepared = if here.of_motion.is_none() { at[0] } else { usize::MAX };
@@ -527,7 +527,8 @@ fn gather<'m>(at: &[usize], m: usize, motion: &'m [f64], gathered: &'m mut [f64]
 /// Copies the packed motions of one law, divided by the factor by which motion scales with its load.
 fn gather_scaled<'m>(
     at: &[usize],
-    (m, factor): (usize, Option<f64>),
+    m: usize,
+    factor: Option<f64>,
     motion: &'m [f64],
     gathered: &'m mut [f64],
 ) -> &'m [f64] {

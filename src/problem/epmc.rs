@@ -512,7 +512,8 @@ impl Jacobian for Epmc<'_> {
                 motion,
                 &self.derivatives.flexibility,
                 &mut self.memory.change,
-                (columns, n),
+                columns,
+                n,
             )?;
         }
         let fundamental = set.fundamental();

@@ -2,10 +2,14 @@
 
 use super::*;
 use crate::contact::Contact;
+use crate::linalg::factors::lu::Lu;
+use crate::linalg::norm;
 use crate::linalg::sparse_storage::matrix_view::MatrixView;
 use crate::model::Model;
 use crate::model::matrices::structure::MatrixKind;
 use crate::options::SolverOptions;
+use crate::problem::Problem;
+use crate::problem::homotopy::AlongPath;
 
 const N: usize = 90;
 

@@ -81,8 +81,7 @@ impl MatrixFree for HarmonicBalance<'_> {
         matrix.fill(Complex64::ZERO);
         for (motion, column) in matrix.chunks_exact_mut(coordinates.max(1)).enumerate() {
             column[motion] = Complex64::ONE;
-            self.forces
-                .add_mean_coupling((motion, i), (table, coordinates + 1), column);
+            self.forces.add_mean_coupling(motion, i, table, coordinates + 1, column);
         }
     }
 

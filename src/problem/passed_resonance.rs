@@ -45,7 +45,7 @@ pub(super) fn between(set: &HarmonicSet, a: &End<'_>, b: &End<'_>, length: f64) 
         } else {
             let shift = shift.get_or_insert_with(|| Shift::of(set, lowest, a, b));
             let order = h / number;
-            if largest_change(set, i, (a, b), order as f64 * shift.angle) < least {
+            if largest_change(set, i, a, b, order as f64 * shift.angle) < least {
                 continue;
             }
             shift.in_harmonic(order)
@@ -60,7 +60,7 @@ pub(super) fn between(set: &HarmonicSet, a: &End<'_>, b: &End<'_>, length: f64) 
 
 /// Upper bound of the change of a harmonic whose motion at `b` is shifted by at most `angle`: the change without the
 /// shift, plus the angle times the size of the motion.
-fn largest_change(set: &HarmonicSet, i: usize, (a, b): (&End<'_>, &End<'_>), angle: f64) -> f64 {
+fn largest_change(set: &HarmonicSet, i: usize, a: &End<'_>, b: &End<'_>, angle: f64) -> f64 {
     let (m, mut first) = (set.packed_len(), set.offset(i));
     let (mut change, mut size) = (0.0, 0.0);
     while let (Some(xa), Some(xb)) = (pair(a.unknowns, first), pair(b.unknowns, first)) {

@@ -140,14 +140,14 @@ impl RingBlocks {
         self.jacobian.fill(0.0);
         let (share, mut squares) = (1.0 / n as f64, 0.0);
         for c in (0..n * k).filter(|&c| !forces.is_eliminated(c)) {
-            squares += share * self.add_contact((condensed, forces), c, share);
+            squares += share * self.add_contact(condensed, forces, c, share);
         }
         let of_mean = dot(&self.jacobian, &self.jacobian);
         *self.unlikeness.insert((1.0 - of_mean / squares).max(0.0).sqrt())
     }
 
     /// Adds a share of the Jacobian of a coordinate minus κ, in the time of its sector; returns the sum of its squares.
-    fn add_contact(&mut self, (condensed, forces): (&Condensed, &ContactForces<'_>), c: usize, share: f64) -> f64 {
+    fn add_contact(&mut self, condensed: &Condensed, forces: &ContactForces<'_>, c: usize, share: f64) -> f64 {
         let (m, k, mut squares) = (self.m, self.coordinates, 0.0);
         let (s, j) = (c / k, c % k);
         let first = m % 2;

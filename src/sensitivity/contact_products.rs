@@ -10,6 +10,7 @@ use crate::linalg::{add_product, dot};
 use crate::model::Model;
 use crate::model::matrices::wave::Wave;
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
+use crate::sensitivity::sampled_model::SampledModel;
 use std::sync::Arc;
 
 /// Products with the forces along the tangential directions and along the normal, by which derivatives follow.
@@ -76,16 +77,18 @@ impl ContactMotion {
     pub fn products(
         &self,
         contact: &Contact,
-        (condensed, samples, omega): (&Condensed, usize, f64),
+        solution: SampledModel<'_>,
+        omega: f64,
         interrupt: &Interrupt<'_>,
     ) -> Result<ContactProducts> {
+        let condensed = solution.condensed;
         let set = condensed.set();
         let m = set.packed_len();
         let mut products = ContactProducts::default();
         let length = condensed.length();
         let size = self.motion.len();
         let evaluation = match &self.law {
-            Some(law) => Some(evaluate(&**law, (condensed, samples, omega), &self.motion, interrupt)?),
+            Some(law) => Some(evaluate(&**law, solution, omega, &self.motion, interrupt)?),
             None if contact.role() == Role::Active => {
                 return fail!(Internal, "an active contact has no relative motion");
             }
@@ -155,7 +158,8 @@ impl ContactProducts {
 /// A law at packed motions in the solver's units.
 pub(super) fn evaluate(
     law: &dyn Law,
-    (condensed, samples, omega): (&Condensed, usize, f64),
+    SampledModel { condensed, samples }: SampledModel<'_>,
+    omega: f64,
     motion: &[f64],
     interrupt: &Interrupt<'_>,
 ) -> Result<Evaluation> {

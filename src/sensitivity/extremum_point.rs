@@ -17,13 +17,23 @@ use crate::sensitivity::central_differences::central_differences;
 use crate::sensitivity::fold_point::{Borders, FoldCondition};
 use crate::sensitivity::forced_point::ForcedPoint;
 
+/// The last column and row of the matrix B but for the unit of the frequency.
+pub(crate) struct ExtremumBorder<'a> {
+    /// Derivative of the residual by ω.
+    pub by_omega: &'a [f64],
+    /// Derivatives of the amplitude by the motions and by ω.
+    pub by_motion: &'a [f64],
+    pub slope: f64,
+}
+
 /// The matrix B at the point evaluated last, column-major, for a frequency unknown whose change by 1 changes ω by
 /// `unit`.
-pub(crate) fn extremum_matrix(
-    jacobian: &[f64],
-    (by_omega, by_motion, slope): (&[f64], &[f64], f64),
-    unit: f64,
-) -> Result<Vec<f64>> {
+pub(crate) fn extremum_matrix(jacobian: &[f64], border: &ExtremumBorder<'_>, unit: f64) -> Result<Vec<f64>> {
+    let &ExtremumBorder {
+        by_omega,
+        by_motion,
+        slope,
+    } = border;
     let m = by_motion.len();
     let n = m + 1;
     let mut matrix = try_vec(n * n, 0.0, CONTEXT)?;
@@ -48,7 +58,9 @@ pub(crate) fn extremum_matrix(
 /// Those of the model and of callbacks; `OutOfMemory`; `StoppedByCaller`.
 pub(crate) fn extremum_gradient(
     point: &mut ForcedPoint<'_>,
-    (u, omega, length): (&[f64], f64, f64),
+    u: &[f64],
+    omega: f64,
+    length: f64,
     at: &FoldCondition,
     unit: f64,
 ) -> Result<Vec<f64>> {
@@ -68,7 +80,7 @@ pub(crate) fn extremum_gradient(
         for ((to, y), t) in moved.iter_mut().zip(u).zip(along) {
             *to = y + step * t;
         }
-        let gradient = point.weighted_gradient(&moved, omega + step * d_omega, (w, weight))?;
+        let gradient = point.weighted_gradient(&moved, omega + step * d_omega, w, weight)?;
         let factor = share / length;
         for (x, g) in found.iter_mut().zip(&gradient) {
             *x += factor * g;
@@ -79,7 +91,7 @@ pub(crate) fn extremum_gradient(
 
 impl ForcedPoint<'_> {
     /// The derivatives of −L (wᵀR + aA) by the motions and by ω, with the unit of lengths L and the weight a of the amplitude.
-    fn weighted_gradient(&mut self, u: &[f64], omega: f64, (w, weight): (&[f64], f64)) -> Result<Vec<f64>> {
+    fn weighted_gradient(&mut self, u: &[f64], omega: f64, w: &[f64], weight: f64) -> Result<Vec<f64>> {
         let (by_motion, amplitude) = self.amplitude(u, omega)?;
         let length = self.length();
         let mut gradient = try_vec(u.len() + 1, 0.0, CONTEXT)?;
@@ -88,8 +100,8 @@ impl ForcedPoint<'_> {
             *g = -length * (dot(column, w) + weight * a);
         }
         let none = try_vec(u.len(), 0.0, CONTEXT)?;
-        let of_equations = self.of_lambda((u, omega), 0.0.into(), w)?.by_omega;
-        let of_amplitude = self.of_lambda((u, omega), amplitude, &none)?.by_omega;
+        let of_equations = self.of_lambda(u, omega, 0.0.into(), w)?.by_omega;
+        let of_amplitude = self.of_lambda(u, omega, amplitude, &none)?.by_omega;
         gradient[u.len()] = of_equations - weight * of_amplitude;
         Ok(gradient)
     }

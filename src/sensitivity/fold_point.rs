@@ -135,7 +135,9 @@ impl Borders {
 /// Those of the model and of callbacks; `OutOfMemory`; `StoppedByCaller`.
 pub(crate) fn fold_gradient(
     point: &mut ForcedPoint<'_>,
-    (u, omega, length): (&[f64], f64, f64),
+    u: &[f64],
+    omega: f64,
+    length: f64,
     at: &FoldCondition,
     mut by_parameter: impl FnMut(&Adjoint) -> Result<f64>,
 ) -> Result<FoldGradient> {

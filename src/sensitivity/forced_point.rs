@@ -75,8 +75,14 @@ impl<'a> ForcedPoint<'a> {
     ///
     /// # Errors
     /// Those of the model and of callbacks; `OutOfMemory`; `StoppedByCaller`.
-    pub fn new(condensed: &'a Condensed, at: (usize, usize), omega: f64, interrupt: &'a Interrupt<'a>) -> Result<Self> {
-        Self::over(condensed, at, omega.into(), interrupt)
+    pub fn new(
+        condensed: &'a Condensed,
+        response: usize,
+        samples: usize,
+        omega: f64,
+        interrupt: &'a Interrupt<'a>,
+    ) -> Result<Self> {
+        Self::over(condensed, response, samples, omega.into(), interrupt)
     }
 
     /// The equations for solutions at frequencies of a range, in which flexibilities are sums where the curve has
@@ -86,7 +92,8 @@ impl<'a> ForcedPoint<'a> {
     /// As [`Self::new`].
     pub fn over(
         condensed: &'a Condensed,
-        (response, samples): (usize, usize),
+        response: usize,
+        samples: usize,
         range: Range,
         interrupt: &'a Interrupt<'a>,
     ) -> Result<Self> {
@@ -115,7 +122,7 @@ impl<'a> ForcedPoint<'a> {
 
     /// Differentiates a response in place of the amplitude; a response without degrees of freedom reads the `default`
     /// one.
-    pub fn watching(mut self, (response, default): (&Response<'_>, usize), samples: usize) -> Result<Self> {
+    pub fn watching(mut self, response: &Response<'_>, default: usize, samples: usize) -> Result<Self> {
         let (condensed, interrupt) = (self.condensed, self.interrupt);
         let one = (core::slice::from_ref(response), default);
         let gauges = boxed(|| Gauges::new(condensed, one, samples, interrupt))?;
@@ -174,7 +181,7 @@ impl<'a> ForcedPoint<'a> {
             factored => factored?,
         }
         self.system.solve_transposed(&mut lambda);
-        let mut adjoint = self.of_lambda((u, omega), amplitude, &lambda)?;
+        let mut adjoint = self.of_lambda(u, omega, amplitude, &lambda)?;
         adjoint.lambda = lambda;
         Ok(Some(adjoint))
     }
@@ -197,7 +204,7 @@ impl<'a> ForcedPoint<'a> {
             return Ok(None);
         };
         let mut x = try_vec(condensed.ndof(), Complex64::ZERO, CONTEXT)?;
-        self.recover((u, omega), i, &mut x)?;
+        self.recover(u, omega, i, &mut x)?;
         let amplitude = match &self.watched {
             Some((gauges, _)) => gauges.amplitude(0, (i, omega), &x),
             None => return fail!(Internal, "no response is watched"),
@@ -206,7 +213,7 @@ impl<'a> ForcedPoint<'a> {
     }
 
     /// The motion of the i-th carried harmonic, in the unit of lengths, at the point evaluated last.
-    fn recover(&mut self, (u, omega): (&[f64], f64), i: usize, x: &mut [Complex64]) -> Result<()> {
+    fn recover(&mut self, u: &[f64], omega: f64, i: usize, x: &mut [Complex64]) -> Result<()> {
         let condensed = self.condensed;
         let (set, m) = (condensed.set(), condensed.set().packed_len());
         self.problem.contact_force(u, i, &mut self.w);
@@ -266,7 +273,7 @@ impl<'a> ForcedPoint<'a> {
             watched: watched.as_ref(),
         });
         let known = seen.as_ref().map(|(i, x, _)| (*i, &x[..]));
-        let mut found = self.of_lambdas((u, omega), &wanted, known)?;
+        let mut found = self.of_lambdas(u, omega, &wanted, known)?;
         let (Some(imaginary), Some(real)) = (found.pop(), found.pop()) else {
             return fail!(Internal, "an adjoint is missing");
         };
@@ -284,7 +291,7 @@ impl<'a> ForcedPoint<'a> {
         for (g, column) in gradient.iter_mut().zip(self.system.matrix.chunks_exact(n.max(1))) {
             *g = self.condensed.length() * (*g - dot(column, lambda));
         }
-        gradient[n] = self.of_lambda((u, omega), amplitude, lambda)?.by_omega;
+        gradient[n] = self.of_lambda(u, omega, amplitude, lambda)?.by_omega;
         Ok(gradient)
     }
 
@@ -299,7 +306,7 @@ impl<'a> ForcedPoint<'a> {
         for (g, column) in gradient.iter_mut().zip(self.system.matrix.chunks_exact(n.max(1))) {
             *g = -self.condensed.length() * dot(column, w);
         }
-        let adjoint = self.of_lambda((u, omega), Complex64::ZERO, w)?;
+        let adjoint = self.of_lambda(u, omega, Complex64::ZERO, w)?;
         gradient[n] = adjoint.by_omega;
         Ok((gradient, adjoint))
     }
@@ -320,14 +327,14 @@ impl<'a> ForcedPoint<'a> {
     ///
     /// # Errors
     /// As [`Self::adjoint`].
-    pub fn of_lambda(&mut self, at: (&[f64], f64), amplitude: Complex64, lambda: &[f64]) -> Result<Adjoint> {
+    pub fn of_lambda(&mut self, u: &[f64], omega: f64, amplitude: Complex64, lambda: &[f64]) -> Result<Adjoint> {
         let known = self.watched.as_mut().and_then(|(_, known)| known.take());
         let wanted = Wanted {
             amplitude,
             lambda,
             watched: known.as_ref(),
         };
-        let found = self.of_lambdas(at, &[wanted], None);
+        let found = self.of_lambdas(u, omega, &[wanted], None);
         if let Some((_, place)) = &mut self.watched {
             *place = known;
         }
@@ -341,7 +348,8 @@ impl<'a> ForcedPoint<'a> {
     /// motion the workspace already holds comes first.
     fn of_lambdas(
         &mut self,
-        (u, omega): (&[f64], f64),
+        u: &[f64],
+        omega: f64,
         wanted: &[Wanted<'_>],
         known: Option<(usize, &[Complex64])>,
     ) -> Result<Vec<Adjoint>> {
@@ -366,7 +374,7 @@ impl<'a> ForcedPoint<'a> {
             let block = &condensed.blocks()[i];
             match known {
                 Some((own, motion)) if own == i => x.copy_from_slice(motion),
-                _ => self.recover((u, omega), i, &mut x)?,
+                _ => self.recover(u, omega, i, &mut x)?,
             }
             let load = &mut self.by_omega[i * n..(i + 1) * n];
             load.fill(Complex64::ZERO);
@@ -460,7 +468,7 @@ impl<'a> ForcedPoint<'a> {
     ///
     /// # Errors
     /// As [`Self::adjoint`].
-    pub fn by_slider(&mut self, (coordinate, stiffness): (usize, f64), omega: f64) -> Result<Vec<f64>> {
+    pub fn by_slider(&mut self, coordinate: usize, stiffness: f64, omega: f64) -> Result<Vec<f64>> {
         let condensed = self.condensed;
         let set = condensed.set();
         let m = set.packed_len();

@@ -7,7 +7,7 @@
 //! The derivative by the motions is −iπh f_h + (∂f/∂y)ᵀ W. One adjoint solution with it gives the derivatives by all parameters through
 //! the motion, and W that by the load of the contact itself at a fixed motion.
 
-use crate::condense::{AssembledLaw, Condensed};
+use crate::condense::AssembledLaw;
 use crate::contact::forms::constants::Constant;
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
@@ -16,6 +16,7 @@ use crate::model::Model;
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
 use crate::sensitivity::contact_products::{ContactMotion, evaluate};
 use crate::sensitivity::forced_point::ForcedPoint;
+use crate::sensitivity::sampled_model::SampledModel;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -26,11 +27,7 @@ impl ForcedPoint<'_> {
     ///
     /// # Errors
     /// As [`ForcedPoint::adjoint`].
-    pub fn work(
-        &mut self,
-        (u, omega): (&[f64], f64),
-        (assembled, samples): (&AssembledLaw, usize),
-    ) -> Result<(f64, Adjoint)> {
+    pub fn work(&mut self, u: &[f64], omega: f64, assembled: &AssembledLaw, samples: usize) -> Result<(f64, Adjoint)> {
         let condensed = self.condensed;
         let (set, length) = (condensed.set(), condensed.length());
         let m = set.packed_len();
@@ -40,7 +37,8 @@ impl ForcedPoint<'_> {
         for (y, &c) in motion.chunks_exact_mut(m.max(1)).zip(at) {
             y.copy_from_slice(&self.problem.forces().motion()[c * m..(c + 1) * m]);
         }
-        let found = evaluate(&*assembled.law, (condensed, samples, omega), &motion, self.interrupt)?;
+        let solution = SampledModel { condensed, samples };
+        let found = evaluate(&*assembled.law, solution, omega, &motion, self.interrupt)?;
         // W, and −iπh f.
         let (mut weight, mut own) = (try_vec(size, 0.0, CONTEXT)?, try_vec(size, 0.0, CONTEXT)?);
         for k in 0..at.len() {
@@ -65,7 +63,7 @@ impl ForcedPoint<'_> {
             lambda[at[q / m] * m + q % m] += own[q] + dot(column, &weight);
         }
         self.system.solve_transposed(&mut lambda);
-        let mut adjoint = self.of_lambda((u, omega), Complex64::ZERO, &lambda)?;
+        let mut adjoint = self.of_lambda(u, omega, Complex64::ZERO, &lambda)?;
         // The equations are in the unit of lengths, and a work in its square.
         for z in &mut adjoint.field {
             *z *= length;
@@ -81,8 +79,10 @@ impl ForcedPoint<'_> {
 /// # Errors
 /// Those of the law; `OutOfMemory`, `StoppedByCaller`.
 pub(crate) fn work_at_fixed_motion(
-    (at_frequency, number, constant): (&Model, usize, Constant),
-    (condensed, samples): (&Condensed, usize),
+    at_frequency: &Model,
+    number: usize,
+    constant: Constant,
+    solution: SampledModel<'_>,
     adjoint: &Adjoint,
     interrupt: &Interrupt<'_>,
 ) -> Result<f64> {
@@ -90,6 +90,7 @@ pub(crate) fn work_at_fixed_motion(
     let Some(derivative) = contact.by_constant(constant).filter(|found| !found.is_one_sided) else {
         return Ok(0.0);
     };
+    let condensed = solution.condensed;
     let (set, length) = (condensed.set(), condensed.length());
     let m = set.packed_len().max(1);
     let mut motion = ContactMotion::new(at_frequency, number, condensed, adjoint)?;
@@ -98,6 +99,6 @@ pub(crate) fn work_at_fixed_motion(
             set.set(field, i, Complex64::new(0.0, PI * h as f64) * length * set.get(y, i));
         }
     }
-    let products = motion.products(contact, (condensed, samples, adjoint.omega), interrupt)?;
+    let products = motion.products(contact, solution, adjoint.omega, interrupt)?;
     Ok(products.with(&derivative))
 }

@@ -21,7 +21,9 @@ const PROBE: f64 = 1e-7;
 /// Those of [`ForcedPoint::adjoint`] and of `sensitivities`.
 pub(crate) fn peak_shift(
     point: &mut ForcedPoint<'_>,
-    (u, omega, amplitude): (&[f64], f64, f64),
+    u: &[f64],
+    omega: f64,
+    amplitude: f64,
     count: usize,
     mut sensitivities: impl FnMut(&Adjoint, &mut [f64]) -> Result<()>,
 ) -> Result<Vec<f64>> {

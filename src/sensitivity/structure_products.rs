@@ -145,7 +145,8 @@ pub(super) fn with_whole(
     model: &Model,
     condensed: &Condensed,
     adjoint: &Adjoint,
-    (which, matrices): (MatrixKind, &mut WaveMatrices),
+    which: MatrixKind,
+    matrices: &mut WaveMatrices,
 ) -> Result<f64> {
     sum(model, condensed, adjoint, which, |i, a, b| {
         let number = condensed.blocks()[i].number;
@@ -165,7 +166,8 @@ pub(super) fn with_speed(
     model: &Model,
     condensed: &Condensed,
     adjoint: &Adjoint,
-    (speed, matrices): (f64, &mut WaveMatrices),
+    speed: f64,
+    matrices: &mut WaveMatrices,
 ) -> Result<f64> {
     let mut total = 0.0;
     for (which, scale) in [
@@ -173,7 +175,7 @@ pub(super) fn with_speed(
         (MatrixKind::Gyroscopic, 1.0),
     ] {
         if model.structure().has(which) && scale != 0.0 {
-            total += scale * with_whole(model, condensed, adjoint, (which, &mut *matrices))?;
+            total += scale * with_whole(model, condensed, adjoint, which, &mut *matrices)?;
         }
     }
     Ok(total)

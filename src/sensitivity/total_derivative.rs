@@ -1,6 +1,5 @@
 //! The total derivative of a result by each parameter, from its adjoint.
 
-use crate::condense::Condensed;
 use crate::contact::forms::constants::Constant;
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
@@ -9,6 +8,7 @@ use crate::model::matrices::speed::Speed;
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
 use crate::sensitivity::contact_products::{ContactMotion, ContactProducts};
 use crate::sensitivity::parameter::{Parameter, Reason};
+use crate::sensitivity::sampled_model::SampledModel;
 use crate::sensitivity::structure_products::{WaveMatrices, with_direction, with_speed, with_whole};
 use num_complex::Complex64;
 
@@ -17,8 +17,7 @@ pub(crate) struct TotalDerivative<'a> {
     /// The model of the caller; and this model at the frequency of the solution.
     model: &'a Model,
     at_frequency: &'a Model,
-    condensed: &'a Condensed,
-    samples: usize,
+    solution: SampledModel<'a>,
     adjoint: &'a Adjoint,
     products: Vec<Option<ContactProducts>>,
     matrices: WaveMatrices,
@@ -31,16 +30,16 @@ impl<'a> TotalDerivative<'a> {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new(
-        (model, at_frequency): (&'a Model, &'a Model),
-        (condensed, samples): (&'a Condensed, usize),
+        model: &'a Model,
+        at_frequency: &'a Model,
+        solution: SampledModel<'a>,
         adjoint: &'a Adjoint,
         interrupt: &'a Interrupt<'a>,
     ) -> Result<Self> {
         Ok(Self {
             model,
             at_frequency,
-            condensed,
-            samples,
+            solution,
             adjoint,
             products: try_vec(model.contacts().len(), None, CONTEXT)?,
             matrices: WaveMatrices::default(),
@@ -64,7 +63,7 @@ impl<'a> TotalDerivative<'a> {
     /// Those of the matrices and laws; `OutOfMemory`; `StoppedByCaller`.
     pub fn by(&mut self, parameter: &Parameter<'_>) -> Result<(f64, Reason)> {
         self.interrupt.check()?;
-        let (model, condensed, adjoint) = (self.at_frequency, self.condensed, self.adjoint);
+        let (model, condensed, adjoint) = (self.at_frequency, self.solution.condensed, self.adjoint);
         let value = match parameter {
             Parameter::Force => self.by_force()?,
             Parameter::Contact { constant, contact } => {
@@ -82,12 +81,12 @@ impl<'a> TotalDerivative<'a> {
                 sum
             }
             Parameter::Direction { which, direction } => -with_direction(model, condensed, adjoint, *which, direction)?,
-            Parameter::Factor { which } => -with_whole(model, condensed, adjoint, (*which, &mut self.matrices))?,
+            Parameter::Factor { which } => -with_whole(model, condensed, adjoint, *which, &mut self.matrices)?,
             Parameter::Speed => {
                 let Speed::Fixed(speed) = self.model.speed() else {
                     return Ok((f64::NAN, Reason::ZeroConstant));
                 };
-                let mut sum = -with_speed(model, condensed, adjoint, (speed, &mut self.matrices))?;
+                let mut sum = -with_speed(model, condensed, adjoint, speed, &mut self.matrices)?;
                 sum += self.by_centrifugal(speed);
                 for load in self.model.speed_loads() {
                     let slope = 2.0 * load.per_speed2 * speed;
@@ -107,7 +106,7 @@ impl<'a> TotalDerivative<'a> {
 
     /// Derivative by a factor on all forces, for results on which forces act.
     fn by_force(&self) -> Result<f64> {
-        let condensed = self.condensed;
+        let condensed = self.solution.condensed;
         let mut force = try_vec(condensed.degrees().independent(), Complex64::ZERO, CONTEXT)?;
         let mut sum = 0.0;
         for (i, block) in condensed.blocks().iter().enumerate() {
@@ -124,7 +123,7 @@ impl<'a> TotalDerivative<'a> {
 
     /// The derivative by the speed of the constant forces that follow it.
     fn by_centrifugal(&self, speed: f64) -> f64 {
-        let condensed = self.condensed;
+        let condensed = self.solution.condensed;
         let forces = self.model.excitation().forces().iter();
         let mut sum = 0.0;
         for force in forces.filter(|force| force.per_speed2 != 0.0) {
@@ -152,9 +151,9 @@ impl<'a> TotalDerivative<'a> {
         let products = if let Some(products) = self.products[number] {
             products
         } else {
-            let motion = ContactMotion::new(self.at_frequency, number, self.condensed, self.adjoint)?;
-            let solution = (self.condensed, self.samples, self.adjoint.omega);
-            *self.products[number].insert(motion.products(contact, solution, self.interrupt)?)
+            let motion = ContactMotion::new(self.at_frequency, number, self.solution.condensed, self.adjoint)?;
+            let omega = self.adjoint.omega;
+            *self.products[number].insert(motion.products(contact, self.solution, omega, self.interrupt)?)
         };
         Ok(Some(-products.with(&derivative)))
     }

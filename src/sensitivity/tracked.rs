@@ -53,6 +53,16 @@ pub(crate) trait Tracked: Problem {
     fn exists(&mut self, point: &Point) -> Result<bool>;
 }
 
+/// The solution from which a result is followed.
+pub(crate) struct FirstMotion<'a> {
+    /// Packed relative motions, static ones included.
+    pub motion: &'a [f64],
+    /// Their unit of length.
+    pub length: f64,
+    /// Angular frequency.
+    pub omega: f64,
+}
+
 /// Writes the derivatives of equations by the parameter, by differences about p; one-sided ones at a limit of the
 /// parameter.
 ///
@@ -60,7 +70,8 @@ pub(crate) trait Tracked: Problem {
 /// Those of the equations at p.
 pub(crate) fn by_differences(
     out: &mut Residual,
-    (p, step): (f64, f64),
+    p: f64,
+    step: f64,
     mut equations: impl FnMut(f64, &mut [f64]) -> Result<f64>,
 ) -> Result<()> {
     let n = out.values.len();

@@ -128,7 +128,7 @@ impl<T: Number> ModalRing<T> {
                 place += count;
             } else if !backward {
                 // With the wave of the other sense, which is its conjugate.
-                ring.add_pair(structure, own, (diameter, count), place);
+                ring.add_pair(structure, own, diameter, count, place);
                 place += 2 * count;
             }
         }
@@ -207,7 +207,7 @@ impl<T: Number> ModalRing<T> {
     }
 
     /// Adds real and imaginary part, times √2, of the coordinates of a wave whose conjugate belongs to the block.
-    fn add_pair(&mut self, structure: &Structure, own: &ContactModes, (diameter, count): (usize, usize), place: usize) {
+    fn add_pair(&mut self, structure: &Structure, own: &ContactModes, diameter: usize, count: usize, place: usize) {
         let m = self.closure.sectors;
         let share = SQRT_2 / (m as f64).sqrt();
         let real = |x: f64| T::of(x.into());

@@ -102,7 +102,8 @@ pub(crate) fn multipliers_of(
     classified(
         map,
         &counts,
-        (lapses, turn),
+        lapses,
+        turn,
         block.closure().has_conjugate,
         system.interrupt,
     )
@@ -121,7 +122,8 @@ pub(crate) struct Counts {
 pub(crate) fn classified(
     map: DMatrix<Complex64>,
     counts: &Counts,
-    (lapses, turn): (usize, Complex64),
+    lapses: usize,
+    turn: Complex64,
     has_conjugate: bool,
     interrupt: &Interrupt<'_>,
 ) -> Result<Vec<Multiplier>> {
@@ -129,10 +131,10 @@ pub(crate) fn classified(
     check_memory::<Complex64>(map.len().saturating_mul(MULTIPLIERS_COPIES), CONTEXT)?;
     let moving = counts.moving;
     let (values, zeros) = if map.iter().all(|z| z.im == 0.0) {
-        let (rest, zeros) = without_zeros(map.map(|z| z.re), (moving, lapses), interrupt)?;
+        let (rest, zeros) = without_zeros(map.map(|z| z.re), moving, lapses, interrupt)?;
         (real_eigenvalues(&rest, interrupt)?, zeros)
     } else {
-        let (rest, zeros) = without_zeros(map, (moving, lapses), interrupt)?;
+        let (rest, zeros) = without_zeros(map, moving, lapses, interrupt)?;
         (general_eigen::values(rest.as_slice(), rest.nrows(), interrupt)?, zeros)
     };
     let mut found = Vec::new();
@@ -224,7 +226,8 @@ fn without_zero_columns<T: ComplexField<RealField = f64>>(map: &mut DMatrix<T>) 
 /// vanish as powers of many lapses.
 fn without_zeros<T: ComplexField<RealField = f64>>(
     mut map: DMatrix<T>,
-    (moving, lapses): (usize, usize),
+    moving: usize,
+    lapses: usize,
     interrupt: &Interrupt<'_>,
 ) -> Result<(DMatrix<T>, usize)> {
     let mut zeros = without_zero_columns(&mut map);

@@ -48,7 +48,8 @@ pub(crate) fn orbit(
     motion: &SliderMotion<'_>,
     structure: &Structure,
     start: SliderState,
-    (tolerance, iterate): (f64, bool),
+    tolerance: f64,
+    iterate: bool,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<Orbit>> {
     let mut current = trial(motion, structure, start)?;

@@ -106,7 +106,7 @@ impl Work<'_> {
     fn solve(&self, design: usize, hooks: &mut Hooks<'_>) -> Option<Solved> {
         let p = self.parameters.len();
         let values = &self.values[design * p..(design + 1) * p];
-        let solved = solve_design(self.model, self.solver, self.options, (self.parameters, values), hooks);
+        let solved = solve_design(self.model, self.solver, self.options, self.parameters, values, hooks);
         if solved.peak.status == Status::StoppedByCaller {
             self.stop.store(true, Ordering::Relaxed);
             return None;

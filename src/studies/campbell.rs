@@ -389,7 +389,7 @@ fn meetings(
         if !(is_first || meets) {
             continue;
         }
-        let Some((speed, modes)) = meet(at, k, order, (low, high), interrupt)? else {
+        let Some((speed, modes)) = meet(at, k, order, low, high, interrupt)? else {
             continue;
         };
         let crossing = Crossing {
@@ -435,7 +435,8 @@ fn meet(
     at: &mut impl FnMut(f64) -> Result<DampedModes>,
     k: usize,
     order: f64,
-    (a, b): ((f64, f64), (f64, f64)),
+    a: (f64, f64),
+    b: (f64, f64),
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<(f64, DampedModes)>> {
     if a.1 == 0.0 || b.1 == 0.0 {

@@ -94,7 +94,7 @@ pub fn campbell_response(
                 error: peak.validity.error,
             };
             if options.acceleration != 0.0 {
-                one.passed = passed((branch, model), &one, (options, synthesis), interrupt)?;
+                one.passed = passed(branch, model, &one, options, synthesis, interrupt)?;
             }
         }
         try_push(&mut all, one, "the resonances of a Campbell diagram")?;
@@ -104,9 +104,11 @@ pub fn campbell_response(
 
 /// The largest amplitude of a passage through a resonance.
 fn passed(
-    (branch, model): (&Branch, &Model),
+    branch: &Branch,
+    model: &Model,
     at: &CampbellResonance,
-    (options, synthesis): (&CampbellResponseOptions<'_>, SynthesisOptions),
+    options: &CampbellResponseOptions<'_>,
+    synthesis: SynthesisOptions,
     interrupt: &Interrupt<'_>,
 ) -> Result<f64> {
     let order = options.engine_order;

@@ -98,7 +98,8 @@ pub(crate) fn solve_design(
     model: &Model,
     solver: &SolverOptions,
     options: &BatchOptions<'_>,
-    (parameters, values): (&[Parameter<'_>], &[f64]),
+    parameters: &[Parameter<'_>],
+    values: &[f64],
     hooks: &mut Hooks<'_>,
 ) -> Solved {
     // A branch that is kept draws its curve, and the peaks of responses are sought between close points.

@@ -67,7 +67,7 @@ pub fn fit(
     let interrupt = hooks.interrupt();
     interrupt.phase(Phase::Results, 0.0)?;
     let own = model.separate_clone()?;
-    let predictor = predictor(&own, (parameters, &unknowns.scopes), data, solver, &interrupt);
+    let predictor = predictor(&own, parameters, &unknowns.scopes, data, solver, &interrupt);
     let search = FitSearch {
         predictor: &predictor,
         unknowns: &unknowns,

@@ -157,15 +157,15 @@ impl MissionWalk<'_> {
                 let omega = first + rate * time;
                 let at = self.oscillator(q.norm())?;
                 let rest = length - time;
-                let mut step = longest_step((omega, rate), &at, q).min(rest);
+                let mut step = longest_step(omega, rate, &at, q).min(rest);
                 // No sliver is left.
                 let ends = rest - step < 1e-9 * length;
                 if ends {
                     step = rest;
                 }
                 let before = q;
-                q = self.step((omega, rate, step), q)?;
-                self.count((begin + time + step, omega + rate * step, rate, step), (before, q))?;
+                q = self.step(omega, rate, step, q)?;
+                self.count((begin + time + step, omega + rate * step, rate, step), before, q)?;
                 time = if ends { length } else { time + step };
                 if self.found.steps > MISSION_MOST_STEPS {
                     return fail!(
@@ -192,7 +192,7 @@ impl MissionWalk<'_> {
     }
 
     /// Makes one step of the given length, with the oscillator at its beginning, then at its middle.
-    fn step(&mut self, (omega, rate, length): (f64, f64, f64), q: Complex64) -> Result<Complex64> {
+    fn step(&mut self, omega: f64, rate: f64, length: f64, q: Complex64) -> Result<Complex64> {
         let mut end = q;
         for _ in 0..2 {
             let at = self.oscillator(0.5 * (q.norm() + end.norm()))?;
@@ -211,7 +211,8 @@ impl MissionWalk<'_> {
     fn count(
         &mut self,
         (time, omega, rate, length): (f64, f64, f64, f64),
-        (before, after): (Complex64, Complex64),
+        before: Complex64,
+        after: Complex64,
     ) -> Result<()> {
         let cycles = (omega - 0.5 * rate * length) * length / TAU;
         let (a, b) = (before.norm(), after.norm());
@@ -279,7 +280,7 @@ impl MissionWalk<'_> {
 }
 
 /// The longest step that the change of frequency and the oscillator allow.
-fn longest_step((omega, rate): (f64, f64), at: &Oscillator, q: Complex64) -> f64 {
+fn longest_step(omega: f64, rate: f64, at: &Oscillator, q: Complex64) -> f64 {
     let natural = at.square.max(0.0).sqrt();
     let width = at.decay().abs();
     let distance = (omega - natural).abs();

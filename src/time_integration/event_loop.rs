@@ -294,7 +294,7 @@ impl EventLoop {
         if let Some(variation) = variation.as_deref_mut() {
             for (i, e) in system.elements.iter().enumerate() {
                 if let Some(mode) = self.dependent[i] {
-                    couple_variation(e, i, (mode, mode), state, variation)?;
+                    couple_variation(e, i, mode, mode, state, variation)?;
                 }
             }
         }
@@ -371,7 +371,7 @@ impl EventLoop {
         if let Some(variation) = variation {
             // The place of a slider that still moves follows from the motion.
             for (i, e) in system.elements.iter().enumerate() {
-                couple_variation(e, i, (self.modes[i], self.modes[i]), state, variation)?;
+                couple_variation(e, i, self.modes[i], self.modes[i], state, variation)?;
             }
             variation.end()?;
         }
@@ -440,9 +440,9 @@ impl EventLoop {
             (self.modes[i], self.zeros[i]) = law.leave(before, which, &at, &mut state.e[i]);
             self.note(i);
             if let Some(variation) = variation.as_deref_mut() {
-                couple_variation(e, i, (before, self.modes[i]), state, variation)?;
+                couple_variation(e, i, before, self.modes[i], state, variation)?;
                 let after = self.modes[i];
-                if let Some(grazing) = touched(e, (before, after), at.rate, (speed, largest_speed)) {
+                if let Some(grazing) = touched(e, before, after, at.rate, (speed, largest_speed)) {
                     variation.graze(i, grazing);
                 }
             }
@@ -501,7 +501,7 @@ impl EventLoop {
 
 /// The event that is touched without being passed at a change of mode, if any. `speeds`: a speed of slip and a speed
 /// of landing, against which slow ones are measured.
-fn touched(e: &Element, (before, after): (Mode, Mode), rate: [f64; 2], speeds: (f64, f64)) -> Option<Grazing> {
+fn touched(e: &Element, before: Mode, after: Mode, rate: [f64; 2], speeds: (f64, f64)) -> Option<Grazing> {
     let slider = e.slider()?;
     match (before, after) {
         (Mode::Stick, Mode::Slip(_)) => {
@@ -517,7 +517,8 @@ fn touched(e: &Element, (before, after): (Mode, Mode), rate: [f64; 2], speeds: (
 fn couple_variation(
     e: &Element,
     i: usize,
-    (mode, after): (Mode, Mode),
+    mode: Mode,
+    after: Mode,
     state: &State,
     variation: &mut (dyn Variation + '_),
 ) -> Result<()> {

@@ -98,12 +98,7 @@ pub fn run_through(model: &Model, options: &SweepOptions<'_>, hooks: &mut Hooks<
     }
     hooks.log(LogLevel::Info, "the periodic motion at the first frequency is found");
     let period = TAU / options.omega_start;
-    find_resting(
-        (&mut system, &mut event_loop),
-        &steady.state,
-        period,
-        &mut found.resting,
-    )?;
+    find_resting(&mut system, &mut event_loop, &steady.state, period, &mut found.resting)?;
     event_loop.clear_moved();
     let mut observed = Vec::new();
     for term in system.degrees.image(options.dof).1 {
@@ -119,7 +114,7 @@ pub fn run_through(model: &Model, options: &SweepOptions<'_>, hooks: &mut Hooks<
     for load in &system.loads {
         try_push(&mut walk.bases, load.value, CONTEXT)?;
     }
-    match walk.run((&mut system, &mut event_loop), &mut found, hooks) {
+    match walk.run(&mut system, &mut event_loop, &mut found, hooks) {
         Err(e) if e.status == Status::StoppedByCaller => found.status = e.status,
         outcome => outcome?,
     }
@@ -128,7 +123,8 @@ pub fn run_through(model: &Model, options: &SweepOptions<'_>, hooks: &mut Hooks<
 
 /// Finds the sliders that do not move in both directions in a periodic motion, by one period of it.
 fn find_resting(
-    (system, event_loop): (&mut System<'_>, &mut EventLoop),
+    system: &mut System<'_>,
+    event_loop: &mut EventLoop,
     steady: &State,
     period: f64,
     resting: &mut [Option<(usize, f64)>],
@@ -159,7 +155,8 @@ struct SweepWalk<'a> {
 impl SweepWalk<'_> {
     fn run(
         &mut self,
-        (system, event_loop): (&mut System<'_>, &mut EventLoop),
+        system: &mut System<'_>,
+        event_loop: &mut EventLoop,
         found: &mut FrequencySweep,
         hooks: &mut Hooks<'_>,
     ) -> Result<()> {

@@ -73,7 +73,7 @@ fn place_sliders(model: &Model, system: &System<'_>, sector: &[Complex64], state
         motions.fill(0.0);
         for (k, row) in e.rows.iter().take(2).enumerate() {
             for (h, own) in sector.chunks_exact(ndof).enumerate() {
-                set.set(&mut packed, h, along(model, row, (h, own)));
+                set.set(&mut packed, h, along(model, row, h, own));
             }
             transform.synthesise(&set, &packed, &mut motions, Lane { first: k, step: 2 });
         }
@@ -89,7 +89,7 @@ fn place_sliders(model: &Model, system: &System<'_>, sector: &[Complex64], state
 
 /// A harmonic coefficient of the relative motion along a row of the unrolled structure, from the coefficients of one
 /// sector.
-fn along(model: &Model, row: &Row, (h, own): (usize, &[Complex64])) -> Complex64 {
+fn along(model: &Model, row: &Row, h: usize, own: &[Complex64]) -> Complex64 {
     let terms = row.iter().flatten();
     terms
         .map(|&(dof, a)| {

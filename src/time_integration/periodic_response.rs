@@ -74,7 +74,7 @@ pub(crate) fn solve_disturbed(
     hooks: &mut Hooks<'_>,
 ) -> Result<TimeResponse> {
     let interrupt = hooks.interrupt();
-    match integrate(model, (options, disturbance), hooks, &interrupt) {
+    match integrate(model, options, disturbance, hooks, &interrupt) {
         Err(e) if e.status == Status::StoppedByCaller => TimeResponse::stopped(model, options),
         outcome => outcome,
     }
@@ -102,7 +102,8 @@ impl TimeResponse {
 
 fn integrate(
     model: &Model,
-    (options, disturbance): (&TimeOptions<'_>, f64),
+    options: &TimeOptions<'_>,
+    disturbance: f64,
     hooks: &mut Hooks<'_>,
     interrupt: &Interrupt<'_>,
 ) -> Result<TimeResponse> {

@@ -212,8 +212,10 @@ impl Products {
     pub fn add_term(
         &self,
         new: &mut [Numbers],
-        (x, v): (&mut [Numbers], &mut [Numbers]),
-        (scale, rate): (f64, f64),
+        x: &mut [Numbers],
+        v: &mut [Numbers],
+        scale: f64,
+        rate: f64,
     ) -> Numbers {
         self.arch.dispatch(AddTerm { new, x, v, scale, rate })
     }

@@ -335,7 +335,7 @@ impl<'a, 'h, 's> SteadySearch<'a, 'h, 's> {
                 base.set(&self.state);
                 let omega = self.system.omega;
                 let shortest = if damped && !converged { SHOOTING_SHORTEST } else { 1.0 };
-                if self.step_from(&base, omega, &step, (residual, shortest))? {
+                if self.step_from(&base, omega, &step, residual, shortest)? {
                     return Ok(Outcome::Stopped);
                 }
                 let fast = self.residual < SHOOTING_FAST * residual;
@@ -366,7 +366,7 @@ impl<'a, 'h, 's> SteadySearch<'a, 'h, 's> {
 
     /// Steps from `base` by the longest halved share of the step that reduces the error below `residual`, but not
     /// shorter than `shortest`; `true`: the caller requested a stop.
-    fn step_from(&mut self, base: &State, omega: f64, step: &[f64], (residual, shortest): (f64, f64)) -> Result<bool> {
+    fn step_from(&mut self, base: &State, omega: f64, step: &[f64], residual: f64, shortest: f64) -> Result<bool> {
         let mut share = 1.0;
         loop {
             self.advance(base, omega, step, share);

@@ -198,7 +198,7 @@ impl<T: Number> VariationalStep<T> {
             }
             let scale = h * h / ((k + 1) * (k + 2)) as f64;
             let rate = (k + 2) as f64 / h;
-            let mut term = products.add_term(new, (x, v), (scale, rate));
+            let mut term = products.add_term(new, x, v, scale, rate);
             for term in &mut term {
                 *term *= (k + 2) as f64;
             }

@@ -1,7 +1,7 @@
 //! Matrices in relative coordinates: motions of nodes are replaced by their motions relative to weighted sums of motions of others, so that a
 //! contact of several weighted degrees of freedom is one of a single one with the ground.
 
-use crate::matrix::{Dof, Matrices, Matrix, Symmetry};
+use crate::matrix::{Dof, Matrix, Symmetry};
 use crate::surface_contacts::SurfaceContact;
 use std::collections::HashMap;
 use std::ops::{AddAssign, Mul};
@@ -111,23 +111,6 @@ impl RelativeCoordinates {
                 f[*j as usize] += w * force;
             }
         }
-    }
-
-    /// The matrices Tᵀ A T of a model.
-    ///
-    /// # Errors
-    /// A sentence: a matrix of another order.
-    pub fn transformed(&self, matrices: &Matrices) -> Result<Matrices, String> {
-        let one = |a: &Option<Matrix>| a.as_ref().map(|a| self.matrix(a)).transpose();
-        Ok(Matrices {
-            stiffness: one(&matrices.stiffness)?,
-            mass: one(&matrices.mass)?,
-            damping: one(&matrices.damping)?,
-            structural: one(&matrices.structural)?,
-            dofs: matrices.dofs.clone(),
-            others: matrices.others.clone(),
-            doubts: matrices.doubts.clone(),
-        })
     }
 
     /// Tᵀ A T of one matrix.

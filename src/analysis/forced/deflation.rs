@@ -30,7 +30,8 @@ impl Deflation {
     pub fn first_solution(
         response: &mut ForcedDiscretised<'_>,
         start: &Point,
-        (known, periods): (&[&Branch], usize),
+        known: &[&Branch],
+        periods: usize,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Point>> {
         let Some(own) = response.solve_at(start, interrupt)? else {
@@ -53,7 +54,7 @@ impl Deflation {
                 if near.unknowns() == own.unknowns() {
                     continue;
                 }
-                if let Some(found) = Self::beside(response, (&near, &mut left_out), (known, periods), interrupt)? {
+                if let Some(found) = Self::beside(response, &near, &mut left_out, known, periods, interrupt)? {
                     return Ok(Some(found));
                 }
             }
@@ -65,8 +66,10 @@ impl Deflation {
     /// added to those left out.
     fn beside(
         response: &mut ForcedDiscretised<'_>,
-        (start, left_out): (&Point, &mut Vec<Vec<f64>>),
-        (known, periods): (&[&Branch], usize),
+        start: &Point,
+        left_out: &mut Vec<Vec<f64>>,
+        known: &[&Branch],
+        periods: usize,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Point>> {
         for _ in 0..DEFLATION_MOST_KNOWN {
@@ -75,7 +78,7 @@ impl Deflation {
             };
             let mut is_known = false;
             for branch in known {
-                is_known |= lies_on(response, branch, (&found, periods), interrupt)?;
+                is_known |= lies_on(response, branch, &found, periods, interrupt)?;
             }
             if !is_known {
                 return Ok(Some(found));

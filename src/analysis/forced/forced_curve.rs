@@ -7,7 +7,7 @@ use crate::analysis::forced::coarse_start::CoarseStart;
 use crate::analysis::forced::forced_discretised::{ForcedDiscretised, relative_motion};
 use crate::analysis::forced::inside_start::{Entry, Inside, in_sense_of};
 use crate::analysis::forced::odd_laws;
-use crate::analysis::forced::sampling::{Sampled, may_refine, required, with_samples};
+use crate::analysis::forced::sampling::{SampledModel, may_refine, required, with_samples};
 use crate::analysis::forced::unbounded_response;
 use crate::condense::blocks::more_harmonics;
 use crate::condense::by_factors::flexibility::Workspace;
@@ -219,7 +219,7 @@ fn follow(
     (waves, hooks): (&SharedWaves, &mut Hooks<'_>),
     interrupt: &Interrupt<'_>,
     trace: impl FnOnce(&mut BranchTracer<'_>, &mut ForcedDiscretised<'_>, Point, &mut Hooks<'_>) -> Result<Status>,
-) -> Result<Sampled> {
+) -> Result<SampledModel> {
     interrupt.phase(Phase::Setup, 0.0)?;
     let sweep = Range::new(range.omega_start, range.omega_stop);
     let forced = forced_harmonics(model)?;

@@ -2,6 +2,7 @@
 
 use crate::analysis::forced::fine_motion::FineMotion;
 use crate::analysis::forced::forced_equations::Equations;
+use crate::analysis::forced::linear_response::LinearResponse;
 use crate::analysis::forced::point_error::observed;
 use crate::analysis::forced::watched_responses::WatchedResponses;
 use crate::analysis::perturbed::branch_stability::BranchStability;
@@ -16,7 +17,7 @@ use crate::continuation::corrector::null_direction::null_direction;
 use crate::continuation::resolve::resolve;
 use crate::continuation::{Metric, ONE_SOLUTION, Point, PointAt, Settings};
 use crate::error::{Result, boxed, try_copy, try_extend, try_vec};
-use crate::harmonics::discretised::{Assessment, Discretised, Judged, LinearParts, Observed, Recorder};
+use crate::harmonics::discretised::{Assessment, Discretised, Judged, LinearParts, Observed};
 use crate::harmonics::estimate_spacing::share_of_highest;
 use crate::harmonics::forced_response_error::ForcedEstimator;
 use crate::harmonics::harmonic_levels::HarmonicLevels;
@@ -33,49 +34,11 @@ use crate::options::Range;
 use crate::options::{Measure, Response, SolverOptions};
 use crate::problem::Problem;
 use crate::problem::gauges::Seen;
-use crate::results::{Branch, Resolution, SpecialKind, Verdict};
+use crate::results::{Branch, Resolution, Verdict};
 use crate::tracing::branch_recorder::{BranchRecorder, Ending};
 use num_complex::Complex64;
 
-/// The equations of a linear response. Their reference is the stuck structure, where that of the others is different
-/// and damping bounds the response of the stuck structure.
-struct LinearResponse<'a> {
-    levels: &'a HarmonicLevels<'a>,
-    equations: Option<(usize, Box<Equations<'a>>)>,
-    /// Frequency of the point solved last.
-    solved: Option<f64>,
-}
-
-impl<'a> LinearResponse<'a> {
-    fn new(levels: &'a HarmonicLevels<'a>) -> Self {
-        Self {
-            levels,
-            equations: None,
-            solved: None,
-        }
-    }
-
-    /// The equations of the linear response at a resolution; `None` where the ordinary ones are as accurate.
-    fn equations(
-        &mut self,
-        needed: bool,
-        index: usize,
-        make: impl FnOnce(&'a Resolution) -> Result<Equations<'a>>,
-    ) -> Result<Option<&mut Equations<'a>>> {
-        if !needed {
-            return Ok(None);
-        }
-        let stored = self.equations.take().filter(|(at, _)| *at == index);
-        let equations = if let Some((_, equations)) = stored {
-            equations
-        } else {
-            let level = self.levels.at(index)?;
-            boxed(|| make(level))?
-        };
-        let (_, equations) = self.equations.insert((index, equations));
-        Ok(Some(equations))
-    }
-}
+mod forced_records;
 
 /// A forced response in the form that the tracer follows.
 pub(crate) struct ForcedDiscretised<'a> {
@@ -316,23 +279,14 @@ impl<'a> ForcedDiscretised<'a> {
         };
         let index = self.resolutions.index();
         let Equations {
-            resolution,
-            problem,
-            response,
-            ..
+            resolution, problem, ..
         } = &mut *self.resolutions.current;
-        let condensed = &resolution.condensed;
-        problem.response(point.unknowns(), point.parameter(), response);
-        self.responses.read(problem, (point, index), condensed.length())?;
+        self.responses
+            .read(problem, (point, index), resolution.condensed.length())?;
         let solved = Solved {
-            condensed,
-            motion: point.unknowns(),
-            omega: point.parameter(),
-            response: response[observed(condensed)] * condensed.length(),
             watched: &self.responses.watched,
             together: self.responses.together,
-            sticks: Some(problem.forces().all_stuck()),
-            iterations: self.told.first_iterations,
+            ..solved(&mut self.resolutions.current, point, self.told.first_iterations)
         };
         if again {
             return estimator.again(&solved);
@@ -357,24 +311,8 @@ impl<'a> ForcedDiscretised<'a> {
         let Some(fine) = &mut self.verdicts.fine else {
             return Ok(None);
         };
-        let Equations {
-            resolution,
-            problem,
-            response,
-            ..
-        } = &mut *self.resolutions.current;
-        let condensed = &resolution.condensed;
-        problem.response(point.unknowns(), point.parameter(), response);
-        fine.at(&Solved {
-            condensed,
-            motion: point.unknowns(),
-            omega: point.parameter(),
-            response: response[observed(condensed)] * condensed.length(),
-            watched: &[],
-            together: false,
-            sticks: Some(problem.forces().all_stuck()),
-            iterations: self.told.first_iterations,
-        })
+        let iterations = self.told.first_iterations;
+        fine.at(&solved(&mut self.resolutions.current, point, iterations))
     }
 
     /// Estimated relative error of the response amplitude; NaN if unknown or not requested.
@@ -584,88 +522,25 @@ impl Observed for ForcedDiscretised<'_> {
     }
 }
 
-impl Recorder for ForcedDiscretised<'_> {
-    fn record(&mut self, point: &Point) -> Result<()> {
-        self.refresh(point)?;
-        let error = self.error(point)?;
-        self.recorder.note_error(error);
-        let resolution = self.resolutions.index();
-        self.responses.see(
-            &mut self.resolutions.current.problem,
-            (point, resolution),
-            &self.errors.of_responses,
-        )?;
-        let record = self.resolutions.current.record(point, error, &self.responses.seen)?;
-        self.recorder.record(&record, point.stalled)?;
-        self.state.linear = self.resolutions.current.problem.forces().all_linear();
-        let fine = if self.state.linear {
-            None
-        } else {
-            self.fine_motion(point)?
-        };
-        if let Some(stability) = &mut self.verdicts.of_points {
-            let resolution = self.resolutions.current.resolution;
-            let verdict = stability.along(resolution, point, fine.as_deref(), self.state.linear)?;
-            self.recorder.record_verdict(verdict)?;
-        }
-        self.resolutions.note_recorded();
-        Ok(())
-    }
-
-    /// Solves the point once more at its frequency, to round-off. At a fold the solution at a fixed frequency is not isolated.
-    fn sharpen(&mut self, kind: SpecialKind, point: &mut Point) -> Result<()> {
-        self.state.stale = false;
-        let Equations { problem, corrector, .. } = &mut *self.resolutions.current;
-        let mut found = None;
-        let accurate = self.linear_response.solved == Some(point.parameter());
-        // The peaks of many responses are as exact as the sweep.
-        let is_further = kind.response().is_some_and(|response| response > 0);
-        if !kind.is_fold() && !accurate && !is_further {
-            found = resolve(problem, corrector, &self.settings, point, true, self.interrupt)?;
-        }
-        if let Some(found) = found {
-            point.v = found.v;
-            point.amplitude = found.amplitude;
-            point.residual = found.residual;
-            return Ok(());
-        }
-        corrector.evaluate(problem, &point.v)?;
-        if kind.response().is_some() {
-            point.amplitude = problem.observe(point.unknowns(), &point.tangent).0;
-        }
-        Ok(())
-    }
-
-    fn record_special(&mut self, kind: SpecialKind, point: &Point) -> Result<()> {
-        let mut error = f64::NAN;
-        if kind.response().is_some_and(|response| response > 0) {
-            // That of the point of the curve before it.
-            error = self.estimator.as_ref().map_or(f64::NAN, |_| self.errors.last);
-        } else if !kind.is_fold() {
-            error = self.error(point)?;
-            self.recorder.note_error(error);
-        }
-        let index = self.resolutions.index();
-        let unknown = if kind.is_fold() {
-            &[]
-        } else {
-            &self.errors.of_responses[..]
-        };
-        self.responses
-            .see(&mut self.resolutions.current.problem, (point, index), unknown)?;
-        let resolution = self.resolutions.current.resolution;
-        let record = self.resolutions.current.record(point, error, &self.responses.seen)?;
-        self.recorder.record_special(kind, resolution, &record, None)?;
-        self.resolutions.note_recorded();
-        Ok(())
-    }
-
-    fn sampling_factor(&self) -> usize {
-        self.recorder.sampling_factor()
-    }
-
-    fn branch(&self) -> &Branch {
-        self.recorder.branch()
+/// The point evaluated last, for an estimate of its amplitude alone.
+fn solved<'p>(current: &'p mut Equations<'_>, point: &'p Point, iterations: usize) -> Solved<'p> {
+    let Equations {
+        resolution,
+        problem,
+        response,
+        ..
+    } = current;
+    let condensed = &resolution.condensed;
+    problem.response(point.unknowns(), point.parameter(), response);
+    Solved {
+        condensed,
+        motion: point.unknowns(),
+        omega: point.parameter(),
+        response: response[observed(condensed)] * condensed.length(),
+        watched: &[],
+        together: false,
+        sticks: Some(problem.forces().all_stuck()),
+        iterations,
     }
 }
 

@@ -96,7 +96,7 @@ impl Inside<'_> {
             );
         };
         for known in self.known {
-            if lies_on(response, known, (&entered.point, self.periods), interrupt)? {
+            if lies_on(response, known, &entered.point, self.periods, interrupt)? {
                 self.entry.set(Entry::Known);
                 return fail!(NoConvergence, "the curve at {} is known", self.omega);
             }
@@ -131,7 +131,7 @@ impl Inside<'_> {
             return Ok(point.map(|point| Entered { point, dropped: None }));
         }
         if self.deflation.is_some() {
-            let point = Deflation::first_solution(response, &start, (self.known, self.periods), interrupt)?;
+            let point = Deflation::first_solution(response, &start, self.known, self.periods, interrupt)?;
             return Ok(point.map(|point| Entered { point, dropped: None }));
         }
         let level = response.resolution();
@@ -150,7 +150,7 @@ impl Inside<'_> {
         };
         let symmetric = dropped(set, guess, ABSENT);
         let seek = |first: &[f64]| response.null_direction(&start, first, interrupt);
-        let Some((null, dropped)) = null_vector(set, (n, 0), symmetric, seek)? else {
+        let Some((null, dropped)) = null_vector(set, n, 0, symmetric, seek)? else {
             return Ok(None);
         };
         start.tangent = null;
@@ -194,7 +194,8 @@ pub(crate) fn in_sense_of(point: &Point, settings: Settings) -> Settings {
 /// may break: the smaller eigenvalue decides. There are `n` unknowns, the last `others` of which are no motions.
 pub(crate) fn null_vector(
     set: &HarmonicSet,
-    (n, others): (usize, usize),
+    n: usize,
+    others: usize,
     symmetric: Option<Dropped>,
     mut seek: impl FnMut(&[f64]) -> Result<Option<(Vec<f64>, f64)>>,
 ) -> Result<Option<(Vec<f64>, Option<Dropped>)>> {

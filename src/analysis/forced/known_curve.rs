@@ -30,7 +30,8 @@ const OTHERS_OF_MODE: usize = 2;
 pub(crate) fn lies_on(
     response: &mut dyn Discretised,
     known: &Branch,
-    (point, periods): (&Point, usize),
+    point: &Point,
+    periods: usize,
     interrupt: &Interrupt<'_>,
 ) -> Result<bool> {
     let level = response.resolution();
@@ -49,7 +50,7 @@ pub(crate) fn lies_on(
         } else {
             0.0
         };
-        if !reaches((omega[i], omega[i + 1]), point.parameter(), beyond) {
+        if !reaches(omega[i], omega[i + 1], point.parameter(), beyond) {
             continue;
         }
         interrupt.check()?;
@@ -63,7 +64,8 @@ pub(crate) fn lies_on(
         };
         if segment.has(
             response,
-            (&moved(i)?, &moved(i + 1)?),
+            &moved(i)?,
+            &moved(i + 1)?,
             (KNOWN_CURVE_HALVINGS, beyond),
             interrupt,
         )? {
@@ -90,7 +92,7 @@ fn state_of(known: &Branch, point: usize, to: &Condensed) -> Result<Vec<f64>> {
 }
 
 /// Whether the line between two frequencies, or a fold of the curve beside it, reaches the frequency `omega`.
-fn reaches((a, b): (f64, f64), omega: f64, beyond: f64) -> bool {
+fn reaches(a: f64, b: f64, omega: f64, beyond: f64) -> bool {
     omega >= a.min(b) - beyond && omega <= a.max(b) + beyond
 }
 
@@ -110,7 +112,8 @@ impl Segment<'_> {
     fn has(
         &self,
         response: &mut dyn Discretised,
-        (a, b): (&[f64], &[f64]),
+        a: &[f64],
+        b: &[f64],
         (halvings, beyond): (usize, f64),
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
@@ -131,7 +134,7 @@ impl Segment<'_> {
             let pairs = found.unknowns().iter().zip(near.unknowns());
             pairs.fold(0.0_f64, |s, (x, y)| s.hypot(x - y)) <= KNOWN_CURVE_BESIDE * length
         };
-        if reaches((a[n], b[n]), omega, 0.0) {
+        if reaches(a[n], b[n], omega, 0.0) {
             let step = b[n] - a[n];
             let mut near = on_line(if step.abs() > 0.0 { (omega - a[n]) / step } else { 0.5 })?;
             near.v[n] = omega;
@@ -155,7 +158,7 @@ impl Segment<'_> {
         for (a, b) in [(a, &middle.v[..]), (&middle.v[..], b)] {
             // A fold is at most as far away as the line is long.
             let beyond = 0.5 * beyond;
-            if reaches((a[n], b[n]), omega, beyond) && self.has(response, (a, b), (halvings - 1, beyond), interrupt)? {
+            if reaches(a[n], b[n], omega, beyond) && self.has(response, a, b, (halvings - 1, beyond), interrupt)? {
                 return Ok(true);
             }
         }

@@ -8,6 +8,7 @@ pub(crate) mod forced_discretised;
 pub(crate) mod forced_equations;
 pub(crate) mod inside_start;
 pub(crate) mod known_curve;
+mod linear_response;
 pub(crate) mod odd_laws;
 pub(crate) mod phase_direction;
 pub mod point_error;

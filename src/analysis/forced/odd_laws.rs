@@ -69,11 +69,11 @@ fn compare(model: &Model, branch: &Branch) -> Result<()> {
             (*u, *v) = (found.x, rate * found.dx);
         }
         let named = |e: Error| e.at(format_args!("contact {}", assembled.contact));
-        let there = forces(&*assembled.law, (omega, times), &u, &v).map_err(named)?;
+        let there = forces(&*assembled.law, omega, times, &u, &v).map_err(named)?;
         for x in u.iter_mut().chain(&mut v) {
             *x = -*x;
         }
-        let opposite = forces(&*assembled.law, (omega, times), &u, &v).map_err(named)?;
+        let opposite = forces(&*assembled.law, omega, times, &u, &v).map_err(named)?;
         let size = there.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
         for (at, (f, g)) in there.iter().zip(&opposite).enumerate() {
             if (f + g).abs() > ODD_LAWS_ROUNDING * size {
@@ -97,7 +97,7 @@ fn compare(model: &Model, branch: &Branch) -> Result<()> {
 }
 
 /// Forces of a law at some times of a motion; a law with states is loaded from zero.
-fn forces(law: &dyn Law, (omega, times): (f64, usize), u: &[f64], v: &[f64]) -> Result<Vec<f64>> {
+fn forces(law: &dyn Law, omega: f64, times: usize, u: &[f64], v: &[f64]) -> Result<Vec<f64>> {
     let d = law.directions();
     let mut f = try_vec(u.len(), 0.0, CONTEXT)?;
     match law.form() {

@@ -7,7 +7,7 @@ use crate::options::{MAX_REFINEMENT, SolverOptions};
 use crate::results::Branch;
 
 /// The outcome of a run: the branch, or for a run that ended early the factor by which more samples are required.
-pub(crate) type Sampled = core::result::Result<Box<Branch>, usize>;
+pub(crate) type SampledModel = core::result::Result<Box<Branch>, usize>;
 
 /// Whether a run may start again with more samples: its laws choose their samples, and there is a tolerance to meet.
 pub(crate) fn may_refine(solver: &SolverOptions) -> bool {
@@ -25,7 +25,7 @@ pub(crate) fn required(solver: &SolverOptions, recorder: &dyn Recorder) -> Optio
 /// Those of the runs.
 pub(crate) fn with_samples(
     solver: &SolverOptions,
-    mut run: impl FnMut(&SolverOptions) -> Result<Sampled>,
+    mut run: impl FnMut(&SolverOptions) -> Result<SampledModel>,
 ) -> Result<Box<Branch>> {
     let mut options = *solver;
     loop {

@@ -72,7 +72,7 @@ impl Net<'_> {
                 }
                 let mut is_known = false;
                 for branch in known {
-                    is_known |= lies_on(response, branch, (&point, periods), interrupt)?;
+                    is_known |= lies_on(response, branch, &point, periods, interrupt)?;
                 }
                 if !is_known {
                     return Ok(Some(point));

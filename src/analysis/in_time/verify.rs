@@ -159,10 +159,10 @@ pub fn verify(
         Err(e) => return Err(e),
     };
     let (of, same_within) = ((model, branch, point), options.same_within);
-    let found = match compare(&x, (time, omega), of, same_within, &interrupt) {
+    let found = match compare(&x, time, omega, of, same_within, &interrupt) {
         Err(e) if e.status == Status::StoppedByCaller => {
             let time = TimeResponse::stopped(model, &options_in_time)?;
-            compare(&x, (time, omega), of, same_within, &Interrupt::none())?
+            compare(&x, time, omega, of, same_within, &Interrupt::none())?
         }
         outcome => outcome?,
     };
@@ -199,7 +199,8 @@ fn times(highest: usize) -> usize {
 
 fn compare(
     x: &[Complex64],
-    (time, omega): (TimeResponse, f64),
+    time: TimeResponse,
+    omega: f64,
     (model, branch, point): (&Model, &Branch, usize),
     same_within: f64,
     interrupt: &Interrupt<'_>,

@@ -145,7 +145,7 @@ pub(crate) fn of_wave(
         };
         let is_alone = !pairs.iter().enumerate().any(|(l, other)| l != k && near(other));
         let direction = if is_alone && !gyroscopic.is_empty() {
-            direction(&problem, &gyroscopic, (*eigenvalue, shape), interrupt)?
+            direction(&problem, &gyroscopic, *eigenvalue, shape, interrupt)?
         } else {
             0
         };
@@ -226,7 +226,8 @@ fn largest_change(mass: &Csc, gyroscopic: &Csc) -> f64 {
 fn direction(
     problem: &Quadratic<'_>,
     gyroscopic: &Csc,
-    (eigenvalue, x): (Complex64, &[Complex64]),
+    eigenvalue: Complex64,
+    x: &[Complex64],
     interrupt: &Interrupt<'_>,
 ) -> Result<i64> {
     let shifted = problem.matrix(eigenvalue * (1.0 + SHIFT_OFFSET))?;

@@ -97,7 +97,7 @@ pub fn static_history(
         let step = match steps.last() {
             // The first load is reached at once.
             None => walk.state(load(0), &places)?,
-            Some(last) => walk.to((load(i - 1), last), load(i), 0)?,
+            Some(last) => walk.to(load(i - 1), last, load(i), 0)?,
         };
         try_push(&mut steps, step, CONTEXT)?;
     }
@@ -163,7 +163,7 @@ struct HistoryWalk<'a> {
 
 impl HistoryWalk<'_> {
     /// The state at the end of a step, from the state at its beginning.
-    fn to(&mut self, (from, begin): (Load, &StaticStep), to: Load, halvings: usize) -> Result<StaticStep> {
+    fn to(&mut self, from: Load, begin: &StaticStep, to: Load, halvings: usize) -> Result<StaticStep> {
         let whole = self.state(to, &begin.places)?;
         if !self.model.contacts().iter().any(|contact| contact.sliders() > 0) {
             return Ok(whole);
@@ -184,8 +184,8 @@ impl HistoryWalk<'_> {
         if halvings >= most || (is_even && agrees && agrees_in_plane) {
             return Ok(second);
         }
-        let half = self.to((from, begin), middle, halvings + 1)?;
-        self.to((middle, &half), to, halvings + 1)
+        let half = self.to(from, begin, middle, halvings + 1)?;
+        self.to(middle, &half, to, halvings + 1)
     }
 
     /// Whether a contact opens, closes, begins to slip or begins to stick within a step, by the states at its
@@ -259,7 +259,7 @@ impl HistoryWalk<'_> {
                 let terms = row.ring_row(|dof, _| dof);
                 terms.iter().flatten().map(|&(dof, a)| a * independent[dof]).sum()
             };
-            self.contact(contact, relative, (&mut step.places[id], &mut step.forces[id]))?;
+            self.contact(contact, relative, &mut step.places[id], &mut step.forces[id])?;
         }
         Ok(step)
     }
@@ -269,7 +269,8 @@ impl HistoryWalk<'_> {
         &mut self,
         contact: &Contact,
         relative: impl Fn(usize) -> f64,
-        (place, force): (&mut [f64; 2], &mut [f64; 3]),
+        place: &mut [f64; 2],
+        force: &mut [f64; 3],
     ) -> Result<()> {
         let count = contact.directions();
         if contact.role() == Role::Inert || contact.places().is_empty() {

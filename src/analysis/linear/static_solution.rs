@@ -176,7 +176,7 @@ fn solve(
     Ok(StaticState {
         motion,
         structure,
-        tangents: tangents(model, condensed, (u, solver.samples), interrupt)?,
+        tangents: tangents(model, condensed, u, solver.samples, interrupt)?,
     })
 }
 
@@ -185,7 +185,8 @@ fn solve(
 fn tangents(
     model: &Model,
     condensed: &Condensed,
-    (rest, samples): (&[f64], usize),
+    rest: &[f64],
+    samples: usize,
     interrupt: &Interrupt<'_>,
 ) -> Result<StaticTangents> {
     let set = HarmonicSet::all(1)?;

@@ -88,7 +88,7 @@ impl ModeTree<'_> {
         depth: usize,
         hooks: &mut Hooks<'_>,
     ) -> Result<()> {
-        self.add_other_phase(parent, (above, depth), hooks)?;
+        self.add_other_phase(parent, above, depth, hooks)?;
         for (number, bifurcation) in parent.bifurcations()?.into_iter().enumerate() {
             if !self.may_seek(depth) {
                 continue;
@@ -118,7 +118,7 @@ impl ModeTree<'_> {
                 });
                 // Beyond a broken symmetry lies the mirror image.
                 let is_whole = dropped.is_some() || child.status() == Status::StoppedClosed;
-                if !self.add(parent, child, (above, depth), hooks)? {
+                if !self.add(parent, child, above, depth, hooks)? {
                     return Ok(());
                 }
                 if is_whole {
@@ -145,7 +145,8 @@ impl ModeTree<'_> {
         &mut self,
         parent: &mut Branch,
         mut child: Branch,
-        (above, depth): (Option<&Above<'_>>, usize),
+        above: Option<&Above<'_>>,
+        depth: usize,
         hooks: &mut Hooks<'_>,
     ) -> Result<bool> {
         self.left -= 1;
@@ -166,7 +167,8 @@ impl ModeTree<'_> {
     fn add_other_phase(
         &mut self,
         parent: &mut Branch,
-        (above, depth): (Option<&Above<'_>>, usize),
+        above: Option<&Above<'_>>,
+        depth: usize,
         hooks: &mut Hooks<'_>,
     ) -> Result<()> {
         let Some(last) = parent.points().checked_sub(1).filter(|last| *last > 0) else {
@@ -191,7 +193,7 @@ impl ModeTree<'_> {
                     internal_resonance: order,
                     ..Descent::default()
                 });
-                self.add(parent, child, (above, depth), hooks)?;
+                self.add(parent, child, above, depth, hooks)?;
             }
             Found::Known => {}
             Found::Nothing => self.searched.lost += 1,

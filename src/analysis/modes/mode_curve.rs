@@ -2,7 +2,7 @@
 
 use crate::analysis::forced::inside_start::in_sense_of;
 use crate::analysis::forced::odd_laws;
-use crate::analysis::forced::sampling::{Sampled, required, with_samples};
+use crate::analysis::forced::sampling::{SampledModel, required, with_samples};
 use crate::analysis::modes::mode_discretised::ModeDiscretised;
 use crate::analysis::modes::mode_entry::{EntryWay, ModeEntry};
 use crate::analysis::modes::mode_equations::LinearStart;
@@ -94,9 +94,7 @@ pub(crate) fn alone(
         with_content.content = Content { base: 1, even: true };
     }
     let solver = &with_content;
-    match with_samples(solver, |solver| {
-        on_wave(model, solver, (range, entry), hooks, &interrupt)
-    }) {
+    match with_samples(solver, |solver| on_wave(model, solver, range, entry, hooks, &interrupt)) {
         Err(e) if e.status == Status::StoppedByCaller => stopped(model, solver, range),
         outcome => outcome.map(|branch| *branch),
     }
@@ -143,10 +141,11 @@ fn stopped(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>) -> Re
 fn on_wave(
     model: &Model,
     solver: &SolverOptions,
-    (range, entry): (&ModeOptions<'_>, Option<&ModeEntry<'_>>),
+    range: &ModeOptions<'_>,
+    entry: Option<&ModeEntry<'_>>,
     hooks: &mut Hooks<'_>,
     interrupt: &Interrupt<'_>,
-) -> Result<Sampled> {
+) -> Result<SampledModel> {
     interrupt.phase(Phase::Setup, 0.0)?;
     let start = boxed(|| ModeStart::new(model, solver, range, interrupt))?;
     let (linear, gauge) = (&start.linear, &start.gauge);

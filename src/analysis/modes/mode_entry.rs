@@ -82,7 +82,7 @@ impl ModeEntry<'_> {
         let entered = match self.way {
             EntryWay::BranchPoint { tangent, sense } => {
                 let at = known_point(start, moved(tangent)?);
-                beside(mode, (&at, sense), (to.set(), settings), interrupt)?
+                beside(mode, &at, sense, to.set(), settings, interrupt)?
             }
             EntryWay::OtherPhase { order } => {
                 let mut at = start;
@@ -100,7 +100,7 @@ impl ModeEntry<'_> {
             );
         };
         for known in self.known {
-            if lies_on(mode, known, (&entered.point, 1), interrupt)? {
+            if lies_on(mode, known, &entered.point, 1, interrupt)? {
                 self.outcome.set(Entry::Known);
                 return fail!(NoConvergence, "the curve beside the nonlinear mode is known");
             }
@@ -127,8 +127,10 @@ fn known_point(v: Vec<f64>, tangent: Vec<f64>) -> Point {
 /// The point beside a branch point, along the null vector in the given sense.
 fn beside(
     mode: &mut ModeDiscretised<'_>,
-    (at, sense): (&Point, f64),
-    (set, settings): (&HarmonicSet, &Settings),
+    at: &Point,
+    sense: f64,
+    set: &HarmonicSet,
+    settings: &Settings,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<Entered>> {
     let n = at.unknowns().len();
@@ -141,7 +143,7 @@ fn beside(
         without(set, &mut at.tangent[..motions], dropped);
     }
     let seek = |first: &[f64]| mode.null_direction(&at, first, interrupt);
-    let Some((mut null, dropped)) = null_vector(set, (n, OTHERS), symmetric, seek)? else {
+    let Some((mut null, dropped)) = null_vector(set, n, OTHERS, symmetric, seek)? else {
         return Ok(None);
     };
     let size = norm(&at.v[..motions]);

@@ -78,7 +78,7 @@ impl OnsetSearch {
                 Some((before, from)) => {
                     let before = transfer(before, *from)?;
                     moved = true;
-                    locate(problem, kind, (&before, point), settings, interrupt)?
+                    locate(problem, kind, &before, point, settings, interrupt)?
                 }
             });
         }
@@ -95,7 +95,8 @@ impl OnsetSearch {
 fn locate(
     problem: &mut Epmc<'_>,
     kind: usize,
-    (a, b): (&Point, &Point),
+    a: &Point,
+    b: &Point,
     settings: &Settings,
     interrupt: &Interrupt<'_>,
 ) -> Result<f64> {

@@ -99,7 +99,7 @@ pub(crate) fn trace(
         if let Some(status) = linear_range(mode, tracer, linear_up_to.min(end), hooks, interrupt)? {
             return Ok(status);
         }
-        requested_below(mode, tracer, (settings, level), linear_up_to, interrupt)?;
+        requested_below(mode, tracer, settings, level, linear_up_to, interrupt)?;
         if end <= linear_up_to {
             return Ok(Status::Ok);
         }
@@ -152,7 +152,8 @@ fn from_guess(
 fn requested_below(
     mode: &mut ModeDiscretised<'_>,
     tracer: &mut BranchTracer<'_>,
-    (settings, level): (Settings, usize),
+    settings: Settings,
+    level: usize,
     linear_up_to: f64,
     interrupt: &Interrupt<'_>,
 ) -> Result<()> {

@@ -98,7 +98,7 @@ impl Tree<'_> {
                     break;
                 }
                 let way = (at.periods * factor, factor, sense);
-                let (mut child, dropped) = match self.child(parent, (&bifurcation, at), way, hooks)? {
+                let (mut child, dropped) = match self.child(parent, &bifurcation, at, way, hooks)? {
                     Found::Curve(child, dropped) => (child, dropped),
                     Found::Known => break,
                     Found::Nothing => {
@@ -108,7 +108,7 @@ impl Tree<'_> {
                 };
                 self.left -= 1;
                 let came_back = child.descent().map_or(f64::NAN, |descent| descent.merges_at);
-                let other = self.end_of(parent, (number, &bifurcation), came_back * factor as f64, at)?;
+                let other = self.end_of(parent, number, &bifurcation, came_back * factor as f64, at)?;
                 child.set_descent(Descent {
                     bifurcation: Some(number),
                     kind: Some(bifurcation.kind),
@@ -176,7 +176,8 @@ impl Tree<'_> {
     fn end_of(
         &self,
         parent: &Branch,
-        (own, from): (usize, &Bifurcation),
+        own: usize,
+        from: &Bifurcation,
         omega: f64,
         at: &Place<'_>,
     ) -> Result<Option<(usize, f64)>> {
@@ -197,7 +198,8 @@ impl Tree<'_> {
     fn child(
         &self,
         parent: &Branch,
-        (from, at): (&Bifurcation, &Place<'_>),
+        from: &Bifurcation,
+        at: &Place<'_>,
         (periods, factor, sense): (usize, usize, f64),
         hooks: &mut Hooks<'_>,
     ) -> Result<Found> {
@@ -242,14 +244,15 @@ impl Tree<'_> {
             net: None,
             deflation: None,
         };
-        self.at_period(&model, (&inside, &guess), (periods, parent.response_dof()), hooks)
+        self.at_period(&model, &inside, &guess, (periods, parent.response_dof()), hooks)
     }
 
     /// A curve that is entered inside the range, on the model with a longer period.
     pub fn at_period(
         &self,
         model: &Model,
-        (inside, guess): (&Inside<'_>, &[Complex64]),
+        inside: &Inside<'_>,
+        guess: &[Complex64],
         (periods, response_dof): (usize, usize),
         hooks: &mut Hooks<'_>,
     ) -> Result<Found> {

@@ -44,7 +44,7 @@ pub(crate) fn add_deflated(
             continue;
         };
         tree.searched.deflations += 1;
-        let Found::Curve(curve, _) = deflated(tree, branch, (point, omega), hooks)? else {
+        let Found::Curve(curve, _) = deflated(tree, branch, point, omega, hooks)? else {
             continue;
         };
         let mut found = tree.whole(tree.model, &curve, 1, hooks)?.unwrap_or(curve);
@@ -60,7 +60,7 @@ pub(crate) fn add_deflated(
 }
 
 /// The curve through a solution that deflation finds beside a point of the response.
-fn deflated(tree: &Tree<'_>, branch: &Branch, (point, omega): (usize, f64), hooks: &mut Hooks<'_>) -> Result<Found> {
+fn deflated(tree: &Tree<'_>, branch: &Branch, point: usize, omega: f64, hooks: &mut Hooks<'_>) -> Result<Found> {
     let mut known = Vec::new();
     try_push(&mut known, branch, CONTEXT)?;
     for sibling in branch.children().iter().filter(|sibling| sibling.periods() == 1) {
@@ -81,5 +81,5 @@ fn deflated(tree: &Tree<'_>, branch: &Branch, (point, omega): (usize, f64), hook
         net: None,
         deflation: Some(Deflation),
     };
-    tree.at_period(tree.model, (&inside, &guess), (1, branch.response_dof()), hooks)
+    tree.at_period(tree.model, &inside, &guess, (1, branch.response_dof()), hooks)
 }

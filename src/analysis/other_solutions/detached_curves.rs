@@ -87,7 +87,7 @@ impl Tree<'_> {
             self.searched.amplitudes.0 = least.min(10f64.powf(range.0));
             self.searched.amplitudes.1 = self.searched.amplitudes.1.max(10f64.powf(range.1));
             match self.along_mode(number, range, hooks) {
-                Ok(motions) => self.add_resonances(branch, (number, &motions), depth, hooks)?,
+                Ok(motions) => self.add_resonances(branch, number, &motions, depth, hooks)?,
                 Err(e) => {
                     self.searched.incomplete_modes += 1;
                     tolerate(e, hooks)?;
@@ -148,7 +148,8 @@ impl Tree<'_> {
     fn add_resonances(
         &mut self,
         branch: &mut Branch,
-        (mode, motions): (usize, &Motions),
+        mode: usize,
+        motions: &Motions,
         depth: usize,
         hooks: &mut Hooks<'_>,
     ) -> Result<()> {
@@ -201,7 +202,7 @@ impl Tree<'_> {
             net: None,
             deflation: None,
         };
-        let found = self.at_period(self.model, (&inside, guess), (1, branch.response_dof()), hooks)?;
+        let found = self.at_period(self.model, &inside, guess, (1, branch.response_dof()), hooks)?;
         let Found::Curve(curve, dropped) = found else {
             return Ok(found);
         };

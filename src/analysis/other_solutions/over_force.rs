@@ -62,7 +62,7 @@ impl Tree<'_> {
                     return Ok(());
                 }
                 self.searched.force_curves += 1;
-                match self.crossings(branch, (kind, point), ends, hooks) {
+                match self.crossings(branch, kind, point, ends, hooks) {
                     Ok(found) => {
                         // The curve begins at a known solution.
                         let is_first = |c: &Crossing| (c.omega - point.omega).abs() <= ONE_SOLUTION * point.omega;
@@ -86,7 +86,8 @@ impl Tree<'_> {
     fn crossings(
         &mut self,
         branch: &Branch,
-        (kind, special): (ResponsePoint, Special),
+        kind: ResponsePoint,
+        special: Special,
         (start, stop): (f64, f64),
         hooks: &mut Hooks<'_>,
     ) -> Result<Vec<Crossing>> {

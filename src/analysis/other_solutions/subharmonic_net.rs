@@ -101,7 +101,7 @@ pub(crate) fn add_subharmonics(
                 };
                 tree.searched.starts += 1;
                 let way = (order, branch.response_dof());
-                let Found::Curve(curve, _) = tree.at_period(&model, (&inside, &guess), way, hooks)? else {
+                let Found::Curve(curve, _) = tree.at_period(&model, &inside, &guess, way, hooks)? else {
                     continue;
                 };
                 let whole = tree.whole(&model, &curve, order, hooks)?;

@@ -4,7 +4,7 @@ use crate::analysis::modes::nonlinear_mode::nonlinear_mode;
 use crate::analysis::over_parameter::followed::Followed;
 use crate::analysis::over_parameter::parameter_curve::CurveRecorder;
 use crate::analysis::over_parameter::parameter_range::{ParameterRange, settings, wanted};
-use crate::analysis::over_parameter::tracked_damping::TrackedDamping;
+use crate::analysis::over_parameter::tracked_damping::{FollowedDamping, TrackedDamping};
 use crate::condense::Condensed;
 use crate::condense::blocks::reduction;
 use crate::error::{Result, Status, fail, try_vec};
@@ -17,6 +17,7 @@ use crate::options::{DampingForm, ModeChoice, ModeOptions, SolverOptions};
 use crate::results::stored::mode_branch::ModeData;
 use crate::results::{Branch, ParameterData};
 use crate::sensitivity::Parameter;
+use crate::sensitivity::tracked::FirstMotion;
 
 /// log₁₀ of an amplitude at which every contact that can stick sticks, whatever the units.
 /// Kind: fixed.
@@ -103,14 +104,20 @@ pub(crate) fn follow(
         samples: branch.samples_at(point).max(resolution.samples),
         ..*solver
     };
-    let mut tracked = TrackedDamping::new(
-        (model, parameter),
-        (&options, branch.response_dof()),
-        Range::new(range.start, range.stop),
-        (linear, gauge),
-        ((&begin, own.length()), omega, at),
-        (to, interrupt),
-    )?;
+    let followed = FollowedDamping {
+        model,
+        parameter,
+        response_dof: branch.response_dof(),
+        linear,
+        gauge,
+    };
+    let start = FirstMotion {
+        motion: &begin,
+        length: own.length(),
+        omega,
+    };
+    let values = Range::new(range.start, range.stop);
+    let mut tracked = TrackedDamping::new(followed, &options, values, &start, at, to, interrupt)?;
     let settings = settings(solver, range);
     let reduction = reduction::reduction_with(&resolution.condensed, first, solver, 0);
     let highest = if levels.is_automatic() { 0 } else { solver.harmonics };

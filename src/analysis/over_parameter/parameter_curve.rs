@@ -160,7 +160,7 @@ impl<'a> CurveRecorder<'a> {
                 return Ok(Status::StoppedPeakVanished);
             }
             let (here, error) = (self.followed.resolution(), self.followed.take_error());
-            self.locate((&before, level), (&point, here))?;
+            self.locate(&before, level, &point, here)?;
             self.followed.select(here)?;
             self.store_with(&point, error)?;
             if self.report(hooks, &point) {
@@ -185,9 +185,9 @@ impl<'a> CurveRecorder<'a> {
     }
 
     /// Locates turns, requested values and optima between two neighbours, each with its level of harmonics.
-    fn locate(&mut self, (a, level_a): (&Point, usize), (b, level_b): (&Point, usize)) -> Result<()> {
+    fn locate(&mut self, a: &Point, level_a: usize, b: &Point, level_b: usize) -> Result<()> {
         if !SpecialPoint::Fold.between(a, b) {
-            return self.locate_without_turn((a, level_a), (b, level_b));
+            return self.locate_without_turn(a, level_a, b, level_b);
         }
         let interrupt = self.interrupt;
         self.followed.select(level_a.max(level_b))?;
@@ -199,14 +199,14 @@ impl<'a> CurveRecorder<'a> {
         })?;
         let found = match self.beside.get(count) {
             Some(found) => (found.point.try_clone()?, found.level),
-            None => return self.locate_without_turn((a, level_a), (b, level_b)),
+            None => return self.locate_without_turn(a, level_a, b, level_b),
         };
         // On each side of the turn the parameter is monotonic.
-        self.locate_without_turn((a, level_a), (&found.0, found.1))?;
-        self.locate_without_turn((&found.0, found.1), (b, level_b))
+        self.locate_without_turn(a, level_a, &found.0, found.1)?;
+        self.locate_without_turn(&found.0, found.1, b, level_b)
     }
 
-    fn locate_without_turn(&mut self, (a, level_a): (&Point, usize), (b, level_b): (&Point, usize)) -> Result<()> {
+    fn locate_without_turn(&mut self, a: &Point, level_a: usize, b: &Point, level_b: usize) -> Result<()> {
         let interrupt = self.interrupt;
         let highest = level_a.max(level_b);
         for (i, &p) in self.wanted.at.iter().enumerate() {

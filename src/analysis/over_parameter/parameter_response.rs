@@ -17,7 +17,8 @@ use crate::model::Model;
 use crate::options::{ForcedOptions, Range, Response, SolverOptions, check_responses};
 use crate::results::motions::recovery;
 use crate::results::{Branch, HigherPeak, ParameterData, Special};
-use crate::sensitivity::{Parameter, ResponsePoint, TrackedResponse, design};
+use crate::sensitivity::tracked::FirstMotion;
+use crate::sensitivity::{FollowedPoint, Parameter, ResponsePoint, TrackedResponse, design};
 
 /// Share of a frequency within which its peak or fold is sought.
 /// Kind: tuned; measured on: not recorded.
@@ -109,9 +110,9 @@ pub fn parameter_response(
     let mut data = ParameterData::default();
     let mut found = follow(models, solver, (range, omega, kind), &mut data, hooks, &interrupt)?;
     if kind == ResponsePoint::Peak && found.status() != Status::StoppedByCaller {
-        find_higher_peaks((model, parameter), solver, (&found, range.response), &mut data, hooks)?;
+        find_higher_peaks(model, parameter, solver, (&found, range.response), &mut data, hooks)?;
         if found.status() == Status::StoppedPeakVanished {
-            let reason = where_next((model, parameter), solver, range, (&found, &data), hooks)?;
+            let reason = where_next(model, parameter, solver, range, (&found, &data), hooks)?;
             found.set_ending(Status::StoppedPeakVanished, Some(reason), (false, false));
         }
     }
@@ -151,14 +152,14 @@ fn follow(
         &WAYS[..]
     };
     for &ends in ways {
-        let branch = match forced_response(first, &seek, &sweep((ends, omega), watched), hooks) {
+        let branch = match forced_response(first, &seek, &sweep(ends, omega, watched), hooks) {
             Err(e) if e.status == Status::NoConvergence && kind != ResponsePoint::Fixed => continue,
             solved => solved?,
         };
         if branch.status() == Status::StoppedByCaller {
             return Branch::stopped(first, solver);
         }
-        if let Some(point) = nearest((&branch, kind), omega) {
+        if let Some(point) = nearest(&branch, kind, omega) {
             found = Some((branch, point));
             break;
         }
@@ -219,14 +220,20 @@ pub(crate) fn follow_from(
         samples: branch.samples_at(point).max(resolution.samples),
         ..*solver
     };
-    let mut tracked = TrackedResponse::new(
-        (model, parameter),
-        (&options, branch.response_dof(), range.response),
-        Range::new(range.start, range.stop),
-        (&start, own.length(), omega),
+    let followed = FollowedPoint {
+        model,
+        parameter,
+        response_dof: branch.response_dof(),
+        response: range.response,
         kind,
-        interrupt,
-    )?;
+    };
+    let first_motion = FirstMotion {
+        motion: &start,
+        length: own.length(),
+        omega,
+    };
+    let values = Range::new(range.start, range.stop);
+    let mut tracked = TrackedResponse::new(followed, &options, values, &first_motion, interrupt)?;
     let settings = settings(solver, range);
     let reduction = reduction::reduction_with(&resolution.condensed, first, solver, 0);
     let highest = if levels.is_automatic() { 0 } else { solver.harmonics };
@@ -244,7 +251,7 @@ pub(crate) fn follow_from(
 }
 
 /// Options of a sweep from `start` to `stop`, both as multiples of a frequency.
-fn sweep<'a>(((start, stop), omega): ((f64, f64), f64), responses: &'a [Response<'a>]) -> ForcedOptions<'a> {
+fn sweep<'a>((start, stop): (f64, f64), omega: f64, responses: &'a [Response<'a>]) -> ForcedOptions<'a> {
     ForcedOptions {
         omega_start: start * omega,
         omega_stop: stop * omega,
@@ -255,7 +262,7 @@ fn sweep<'a>(((start, stop), omega): ((f64, f64), f64), responses: &'a [Response
 
 /// Index of the special point of a kind nearest to a frequency; `None` where none is within
 /// [`PARAMETER_RESPONSE_NEAR`] of it.
-fn nearest((branch, kind): (&Branch, ResponsePoint), omega: f64) -> Option<usize> {
+fn nearest(branch: &Branch, kind: ResponsePoint, omega: f64) -> Option<usize> {
     let list = match kind {
         ResponsePoint::Fixed => return (branch.points() > 0).then_some(0),
         ResponsePoint::Peak | ResponsePoint::Extremum => branch.peaks(),
@@ -269,7 +276,8 @@ fn nearest((branch, kind): (&Branch, ResponsePoint), omega: f64) -> Option<usize
 /// Explains why a peak vanished: names the highest peak of the response a little beyond the last value, if it has
 /// one.
 fn where_next(
-    (model, parameter): (&Model, Parameter<'_>),
+    model: &Model,
+    parameter: Parameter<'_>,
     solver: &SolverOptions,
     range: &ParameterRange<'_>,
     (found, data): (&Branch, &ParameterData),
@@ -318,7 +326,8 @@ fn where_next(
 /// Compares the followed peak with the highest one within a tenth of its frequency, at the first and the last point of
 /// the curve and at the optima.
 fn find_higher_peaks(
-    (model, parameter): (&Model, Parameter<'_>),
+    model: &Model,
+    parameter: Parameter<'_>,
     solver: &SolverOptions,
     (found, response): (&Branch, Option<Response<'_>>),
     data: &mut ParameterData,
@@ -342,7 +351,7 @@ fn find_higher_peaks(
             response_dof: Some(found.response_dof()),
             ..*solver
         };
-        let range = sweep((WAYS[0], omega), response.as_slice());
+        let range = sweep(WAYS[0], omega, response.as_slice());
         let mut quiet = hooks.quiet();
         // A sweep that fails shows no peak.
         let Ok(branch) = forced_response(&design, &solver, &range, &mut quiet) else {

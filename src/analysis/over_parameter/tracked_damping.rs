@@ -27,8 +27,10 @@ use crate::problem::epmc::{Epmc, Gauge, LinearMode};
 use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
 use crate::results::stored::mode_branch::ModePoint;
 use crate::results::{Branch, ParameterData, Record, Special, SpecialKind};
-use crate::sensitivity::tracked::{Tracked, Unknowns, by_differences};
-use crate::sensitivity::{ModePointAdjoint, ModeQuantity, Parameter, TotalDerivative, central_differences, design};
+use crate::sensitivity::tracked::{FirstMotion, Tracked, Unknowns, by_differences};
+use crate::sensitivity::{
+    ModePointAdjoint, ModeQuantity, Parameter, SampledModel, TotalDerivative, central_differences, design,
+};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -38,15 +40,21 @@ const CONTEXT: &str = "the parameter response";
 /// Kind: tuned; measured on: not recorded.
 const AMPLITUDE_UNIT: f64 = 0.1;
 
+/// The mode whose largest damping ratio is followed, and the parameter over which.
+#[derive(Clone, Copy)]
+pub(crate) struct FollowedDamping<'a> {
+    pub model: &'a Model,
+    pub parameter: Parameter<'a>,
+    pub response_dof: usize,
+    /// The linear mode at the first value, whose frequency, damping and shape give the units at all values.
+    pub linear: &'a LinearMode,
+    pub gauge: &'a Gauge,
+}
+
 /// The largest damping ratio of a nonlinear mode over a parameter.
 pub(crate) struct TrackedDamping<'a> {
-    model: &'a Model,
-    parameter: Parameter<'a>,
+    followed: FollowedDamping<'a>,
     solver: SolverOptions,
-    response_dof: usize,
-    /// The linear mode at the first value, whose frequency, damping and shape give the units at all values.
-    linear: &'a LinearMode,
-    gauge: &'a Gauge,
     /// Amplitude, as log₁₀, at which its unknown is 0.
     log10_amplitude: f64,
     /// Unit of length of the motions among the unknowns.
@@ -78,39 +86,38 @@ impl<'a> TrackedDamping<'a> {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new(
-        (model, parameter): (&'a Model, Parameter<'a>),
-        (solver, response_dof): (&SolverOptions, usize),
+        followed: FollowedDamping<'a>,
+        solver: &SolverOptions,
         range: Range,
-        (linear, gauge): (&'a LinearMode, &'a Gauge),
-        ((motion, length), omega, point): ((&[f64], f64), f64, ModePoint),
-        (set, interrupt): (&HarmonicSet, &'a Interrupt<'a>),
+        start: &FirstMotion<'_>,
+        point: ModePoint,
+        set: &HarmonicSet,
+        interrupt: &'a Interrupt<'a>,
     ) -> Result<Self> {
+        let &FirstMotion { motion, length, omega } = start;
+        let linear = followed.linear;
         let n = motion.len() + 3;
-        let mut start = try_vec(n, 0.0, CONTEXT)?;
-        start[..motion.len()].copy_from_slice(motion);
+        let mut begin = try_vec(n, 0.0, CONTEXT)?;
+        begin[..motion.len()].copy_from_slice(motion);
         let rest = linear.rest.in_units(length)?;
-        for (u, rest) in start.iter_mut().step_by(set.packed_len()).zip(&rest.motion) {
+        for (u, rest) in begin.iter_mut().step_by(set.packed_len()).zip(&rest.motion) {
             *u -= rest;
         }
         let amplitude = 10f64.powf(point.log10_amplitude);
-        for u in &mut start[..motion.len()] {
+        for u in &mut begin[..motion.len()] {
             *u /= amplitude;
         }
         Epmc::set_frequency_and_damping(
             linear,
             DampedFrequency::new(omega, point.damping_ratio),
-            &mut start[..n - 1],
+            &mut begin[..n - 1],
         );
         Ok(Self {
-            model,
-            parameter,
+            followed,
             solver: *solver,
-            response_dof,
-            linear,
-            gauge,
             log10_amplitude: point.log10_amplitude,
             length,
-            unknowns: Unknowns::new(start, range)?,
+            unknowns: Unknowns::new(begin, range)?,
             interrupt,
             last: LastDamping {
                 damping: 0.0,
@@ -126,12 +133,16 @@ impl<'a> TrackedDamping<'a> {
     }
 
     fn at(&self, p: f64) -> Result<At> {
-        let model = design(self.model, core::slice::from_ref(&self.parameter), &[p])?;
+        let model = design(
+            self.followed.model,
+            core::slice::from_ref(&self.followed.parameter),
+            &[p],
+        )?;
         let model = model.with_separate_loss()?.into_owned();
         let linear = LinearMode {
             rest: static_state(&model, &self.solver, NEEDS_SPEED, self.interrupt)?,
-            shape: try_copy(&self.linear.shape, CONTEXT)?,
-            ..*self.linear
+            shape: try_copy(&self.followed.linear.shape, CONTEXT)?,
+            ..*self.followed.linear
         };
         let form = (DampingForm::Mass, linear.rest.is_loaded());
         let (condensed, _) = Condensed::for_mode(&model, &self.solver, form, &linear.shape, self.interrupt)?;
@@ -182,7 +193,7 @@ impl<'a> TrackedDamping<'a> {
         let (own, log10) = (self.own(u, &at.condensed)?, self.log10(u));
         let mut problem = Epmc::new(
             &at.condensed,
-            self.gauge,
+            self.followed.gauge,
             &at.linear,
             self.solver.samples,
             self.interrupt,
@@ -213,7 +224,7 @@ impl<'a> TrackedDamping<'a> {
         for t in &mut tangent {
             *t = -*t;
         }
-        let row = maximum_row(&mut problem, (&own, log10), &tangent, &lambda)?;
+        let row = maximum_row(&mut problem, &own, log10, &tangent, &lambda)?;
         self.last.curvature = dot(&row[..x], &tangent) + row[x];
         self.unknowns.matrix.fill(0.0);
         // Motions are in another unit than those of the condensed model.
@@ -245,7 +256,7 @@ impl<'a> TrackedDamping<'a> {
         let adjoint = ModePointAdjoint {
             condensed: &at.condensed,
             linear: &at.linear,
-            gauge: self.gauge,
+            gauge: self.followed.gauge,
             samples: self.solver.samples,
             motion: &motion,
             omega,
@@ -259,19 +270,17 @@ impl<'a> TrackedDamping<'a> {
             return Ok(f64::NAN);
         };
         let at_frequency = at.model.at_frequency(omega)?;
-        let solution = (&at.condensed, self.solver.samples);
-        let mut total = TotalDerivative::new((&at.model, &at_frequency), solution, &adjoint, self.interrupt)?;
-        Ok(self.parameter.relative_at(p) * total.by(&self.parameter)?.0)
+        let solution = SampledModel {
+            condensed: &at.condensed,
+            samples: self.solver.samples,
+        };
+        let mut total = TotalDerivative::new(&at.model, &at_frequency, solution, &adjoint, self.interrupt)?;
+        Ok(self.followed.parameter.relative_at(p) * total.by(&self.followed.parameter)?.0)
     }
 }
 
 /// The derivatives of g = −λᵀ ∂R/∂a by the unknowns of the mode and by a.
-fn maximum_row(
-    problem: &mut Epmc<'_>,
-    (own, log10): (&[f64], f64),
-    tangent: &[f64],
-    lambda: &[f64],
-) -> Result<Vec<f64>> {
+fn maximum_row(problem: &mut Epmc<'_>, own: &[f64], log10: f64, tangent: &[f64], lambda: &[f64]) -> Result<Vec<f64>> {
     let x = own.len();
     let mut row = try_vec(x + 1, 0.0, CONTEXT)?;
     let mut there = Residual::new(x)?;
@@ -325,8 +334,8 @@ impl Tracked for TrackedDamping<'_> {
             sticks: Some(false),
             iterations: 0,
         };
-        let start = (&at.linear, self.gauge);
-        let response = self.response_dof;
+        let start = (&at.linear, self.followed.gauge);
+        let response = self.followed.response_dof;
         let (models, waves) = (ModelCache::for_estimates()?, SharedWaves::default());
         let mut estimator = ModeEstimator::new(
             (&at.model, &self.solver),
@@ -351,7 +360,7 @@ impl Tracked for TrackedDamping<'_> {
         let unit = 10f64.powf(self.log10(&v[..motions + 3])) * self.length;
         set.transfer(&corrected.set, &corrected.motion, 1.0 / unit, &mut v[..motions]);
         let both = DampedFrequency::new(corrected.omega, corrected.damping);
-        Epmc::set_frequency_and_damping(self.linear, both, &mut v[..motions + 2]);
+        Epmc::set_frequency_and_damping(self.followed.linear, both, &mut v[..motions + 2]);
     }
 
     fn store(
@@ -381,7 +390,7 @@ impl Tracked for TrackedDamping<'_> {
         };
         let start = LinearStart {
             linear: &linear,
-            gauge: self.gauge,
+            gauge: self.followed.gauge,
             is_repeated: false,
             interrupt: self.interrupt,
         };
@@ -393,7 +402,7 @@ impl Tracked for TrackedDamping<'_> {
             steps: StepControl::new(self.solver.step, self.solver.step_min, self.solver.step_max),
         };
         let mut equations = Equations::new(&resolution, &start, &settings)?;
-        equations.evaluate(&at, self.response_dof)?;
+        equations.evaluate(&at, self.followed.response_dof)?;
         let mode = equations.measure(&at, &linear, &[]);
         let sampling_error = equations.problem.sampling_error(&equations.motion, omega)?;
         let record = Record {
@@ -413,7 +422,7 @@ impl Tracked for TrackedDamping<'_> {
         if let Some(modes) = branch.mode_data_mut() {
             modes.push(mode)?;
         }
-        data.push(p, (f64::NAN, self.last.d_damping))?;
+        data.push(p, f64::NAN, self.last.d_damping)?;
         let special = Special {
             point: branch.stored() - 1,
             omega,
@@ -446,7 +455,7 @@ impl Jacobian for TrackedDamping<'_> {
 
 impl Problem for TrackedDamping<'_> {
     fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Residual) -> Result<()> {
-        by_differences(out, (p, self.unknowns.step), |p, values| {
+        by_differences(out, p, self.unknowns.step, |p, values| {
             self.equations(u, p, false, values)
         })?;
         out.scale = self.equations(u, p, true, &mut out.values)?;

@@ -123,7 +123,8 @@ impl<'a> BranchStability<'a> {
                 self.model,
                 &motion,
                 &options,
-                (&mut Hooks::default(), &mut self.modes),
+                &mut Hooks::default(),
+                &mut self.modes,
                 self.interrupt,
             );
             match found {

@@ -142,7 +142,8 @@ fn conjugate(values: &mut [Complex64], conjugated: bool) {
 /// Floquet multipliers of a motion on a number of modes; `StoppedByCaller` is an error.
 pub(crate) fn perturbed_sliders(
     model: &Model,
-    (seen, modes): (&SliderModes, usize),
+    seen: &SliderModes,
+    modes: usize,
     motion: &Motion<'_>,
     options: &FloquetOptions,
     interrupt: &Interrupt<'_>,
@@ -158,12 +159,13 @@ pub(crate) fn perturbed_sliders(
     let lapses = structure.repeating_sectors();
     let forces = forces_on(structure, &ring, seen, interrupt)?;
     let in_time = SliderMotion::new(&ring, &seen.sliders, (motion.omega, lapses), forces, interrupt)?;
-    let start = state_of_motion(structure, &ring, seen, (motion.omega, &harmonics), interrupt)?;
+    let start = state_of_motion(structure, &ring, seen, motion.omega, &harmonics, interrupt)?;
     let found = orbit(
         &in_time,
         structure,
         start.try_clone()?,
-        (options.tolerance, options.refine),
+        options.tolerance,
+        options.refine,
         interrupt,
     )?;
     let Some(orbit) = found else {
@@ -176,14 +178,14 @@ pub(crate) fn perturbed_sliders(
     for closure in &blocks {
         let apart = structure.sectors() / closure.sectors;
         let found = if closure.has_wave {
-            multipliers(structure, &ring, &orbit, (lapses, &in_time), interrupt)?
+            multipliers(structure, &ring, &orbit, lapses, &in_time, interrupt)?
         } else if (2 * closure.index).is_multiple_of(apart) {
             let ring = ModalRing::<f64>::new(structure, *closure, (&seen.modes, modes), &seen.sliders, interrupt)?;
-            multipliers(structure, &ring, &orbit, (lapses, &in_time), interrupt)?
+            multipliers(structure, &ring, &orbit, lapses, &in_time, interrupt)?
         } else {
             let block = (&seen.modes[..], modes);
             let ring = ModalRing::<Complex64>::new(structure, *closure, block, &seen.sliders, interrupt)?;
-            multipliers(structure, &ring, &orbit, (lapses, &in_time), interrupt)?
+            multipliers(structure, &ring, &orbit, lapses, &in_time, interrupt)?
         };
         try_extend(&mut all, &found, CONTEXT)?;
     }
@@ -206,7 +208,8 @@ fn multipliers<T: Number>(
     structure: &Structure,
     ring: &ModalRing<T>,
     orbit: &Orbit,
-    (lapses, motion): (usize, &SliderMotion<'_>),
+    lapses: usize,
+    motion: &SliderMotion<'_>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Vec<Multiplier>> {
     let closure: &Closure = &ring.closure;
@@ -222,7 +225,7 @@ fn multipliers<T: Number>(
         moving: map.moving.len(),
     };
     let matrix = filled(map.states(), map.states(), CONTEXT, |i, j| matrix[(i, j)].complex())?;
-    classified(matrix, &counts, (lapses, turn), closure.has_conjugate, interrupt)
+    classified(matrix, &counts, lapses, turn, closure.has_conjugate, interrupt)
 }
 
 /// Harmonics of the independent degrees of freedom, from those of all of the caller's.
@@ -256,7 +259,7 @@ fn is_odd(model: &Model, harmonics: &[Vec<Complex64>]) -> Result<bool> {
 /// Amplitudes on the coordinates of a ring from amplitudes on the modes of a harmonic: φᴴF, or φᴴF̄ where its wave
 /// travels backward. With x_s = Re(X e^{−iδs} e^{ihωt}) the wave δ has the coordinate √m/2 φᴴMX e^{ihωt}, and the
 /// wave of the other sense its conjugate.
-fn on_ring(ring: &ModalRing<f64>, (diameter, backward): (usize, bool), modal: &[Complex64]) -> Result<Vec<Complex64>> {
+fn on_ring(ring: &ModalRing<f64>, diameter: usize, backward: bool, modal: &[Complex64]) -> Result<Vec<Complex64>> {
     let mut found = try_vec(ring.order(), Complex64::ZERO, CONTEXT)?;
     let sectors = (ring.closure.sectors as f64).sqrt();
     for wave in ring.waves.iter().filter(|wave| wave.diameter == diameter) {
@@ -291,7 +294,7 @@ fn forces_on(
         let Some(own) = own else { continue };
         for force in &own.forces {
             interrupt.check_before((ring.contacts * (ring.modes + m)) as u64)?;
-            let modal = on_ring(ring, (diameter, force.backward), &force.modal)?;
+            let modal = on_ring(ring, diameter, force.backward, &force.modal)?;
             let mut relative = try_vec(ring.all(), Complex64::ZERO, CONTEXT)?;
             for c in 0..ring.contacts {
                 let mut rest = force.static_motion[c];
@@ -320,7 +323,8 @@ fn state_of_motion(
     structure: &Structure,
     ring: &ModalRing<f64>,
     seen: &SliderModes,
-    (omega, harmonics): (f64, &[Vec<Complex64>]),
+    omega: f64,
+    harmonics: &[Vec<Complex64>],
     interrupt: &Interrupt<'_>,
 ) -> Result<SliderState> {
     let order = ring.order();
@@ -339,7 +343,7 @@ fn state_of_motion(
         interrupt.check_before(((ring.modes + ring.contacts) * x.len()) as u64)?;
         let mut x = try_copy(x, CONTEXT)?;
         conjugate(&mut x, backward);
-        let amplitudes = on_ring(ring, (diameter, backward), &own.coordinates(&x, ring.modes)?)?;
+        let amplitudes = on_ring(ring, diameter, backward, &own.coordinates(&x, ring.modes)?)?;
         for (i, z) in amplitudes.iter().enumerate() {
             state.q[i] += z.re;
             state.v[i] -= h as f64 * omega * z.im;

@@ -103,7 +103,7 @@ fn both(model: &Model, omega: f64, waves: Waves, modes: &[usize]) -> (Floquet, V
         ..FloquetOptions::default()
     };
     let (hooks, kept) = (&mut Hooks::default(), &mut KeptModes::default());
-    let all = floquet_of(model, &motion, &options, (hooks, kept), &none).unwrap();
+    let all = floquet_of(model, &motion, &options, hooks, kept, &none).unwrap();
     options.modes = None;
     let step = match waves {
         Waves::Wave => model.structure().sectors() / model.structure().repeating_sectors(),
@@ -111,7 +111,7 @@ fn both(model: &Model, omega: f64, waves: Waves, modes: &[usize]) -> (Floquet, V
     };
     let on = |&count: &usize| {
         let seen = SliderModes::new(model, step, count, &none).unwrap();
-        let found = perturbed_sliders(model, (&seen, count), &motion, &options, &none).unwrap();
+        let found = perturbed_sliders(model, &seen, count, &motion, &options, &none).unwrap();
         println!(
             "{count} modes: radius {:.9}, {:.1e} off, moved {:.1e} ({:.1e} on all)",
             found.stability.radius,

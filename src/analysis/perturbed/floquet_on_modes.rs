@@ -142,14 +142,15 @@ pub(crate) fn floquet_of(
     model: &Model,
     motion: &Motion<'_>,
     options: &FloquetOptions,
-    (hooks, kept): (&mut Hooks<'_>, &mut KeptModes),
+    hooks: &mut Hooks<'_>,
+    kept: &mut KeptModes,
     interrupt: &Interrupt<'_>,
 ) -> Result<Found> {
-    match on_quickest(model, motion, options, (hooks, kept), interrupt) {
+    match on_quickest(model, motion, options, hooks, kept, interrupt) {
         // Nothing holds the structure with sticking contacts, or nothing but slipping ones.
         Err(e) if e.status == Status::Unsupported && kept.way == Some(Way::Sliders) => {
             kept.way = Some(Way::Shapes);
-            on_quickest(model, motion, options, (hooks, kept), interrupt)
+            on_quickest(model, motion, options, hooks, kept, interrupt)
         }
         found => found,
     }
@@ -160,7 +161,8 @@ fn on_quickest(
     model: &Model,
     motion: &Motion<'_>,
     options: &FloquetOptions,
-    (hooks, kept): (&mut Hooks<'_>, &mut KeptModes),
+    hooks: &mut Hooks<'_>,
+    kept: &mut KeptModes,
     interrupt: &Interrupt<'_>,
 ) -> Result<Found> {
     let way = match kept.way(model, motion.omega, options)? {
@@ -179,12 +181,12 @@ fn on_quickest(
     let mut modes = match (options.modes, kept.last) {
         (Some(modes), _) => modes.div_ceil(2),
         (None, Some(last)) => last.div_ceil(2),
-        (None, None) => first_number(at_speed, motion.omega, (way, kept), options.waves, interrupt)?,
+        (None, None) => first_number(at_speed, motion.omega, way, kept, options.waves, interrupt)?,
     };
     let mut few: Option<Found> = None;
     let mut refused = None;
     for _ in 0..=DOUBLINGS {
-        let next = on_a_number(at_speed, motion, (options, way, modes), (hooks, kept), interrupt);
+        let next = on_a_number(at_speed, motion, (options, way, modes), hooks, kept, interrupt);
         let mut many = match next {
             // A motion on too few modes may be far from the point.
             Err(e) if e.status == Status::NoConvergence && few.is_none() && options.modes.is_none() => {
@@ -230,13 +232,14 @@ fn on_a_number(
     model: &Model,
     motion: &Motion<'_>,
     (options, way, modes): (&FloquetOptions, Way, usize),
-    (hooks, kept): (&mut Hooks<'_>, &mut KeptModes),
+    hooks: &mut Hooks<'_>,
+    kept: &mut KeptModes,
     interrupt: &Interrupt<'_>,
 ) -> Result<Found> {
     if way == Way::Sliders {
         let seen = kept.seen(model, modes, options.waves, interrupt)?;
         let modes = modes.min(seen.modes());
-        let found = perturbed_sliders(model, (seen, modes), motion, options, interrupt)?;
+        let found = perturbed_sliders(model, seen, modes, motion, options, interrupt)?;
         log_radius(hooks, &found.stability);
         return Ok(found);
     }
@@ -263,7 +266,8 @@ fn log_radius(hooks: &mut Hooks<'_>, stability: &Floquet) {
 fn first_number(
     model: &Model,
     omega: f64,
-    (way, kept): (Way, &mut KeptModes),
+    way: Way,
+    kept: &mut KeptModes,
     waves: Waves,
     interrupt: &Interrupt<'_>,
 ) -> Result<usize> {

@@ -97,8 +97,8 @@ pub fn smallest_kick(
         );
     }
     let interrupt = hooks.interrupt();
-    let lower = harmonics((model, branch, point), "point", &interrupt)?;
-    let between = harmonics((model, saddle_branch, saddle), "saddle", &interrupt)?;
+    let lower = harmonics(model, branch, point, "point", &interrupt)?;
+    let between = harmonics(model, saddle_branch, saddle, "saddle", &interrupt)?;
     if (lower.0 / between.0 - 1.0).abs() > SAME_FREQUENCY {
         return fail!(
             Argument,
@@ -142,7 +142,9 @@ pub fn smallest_kick(
 
 /// Frequency and harmonics of a point of a forced response.
 fn harmonics(
-    (model, branch, point): (&Model, &Branch, usize),
+    model: &Model,
+    branch: &Branch,
+    point: usize,
     name: &str,
     interrupt: &Interrupt<'_>,
 ) -> Result<(f64, Vec<Complex64>)> {

@@ -108,7 +108,7 @@ pub fn band(
     } else {
         searched(&held, first, options.starts)?
     };
-    with_ends(&held, found, (branch, point), (options, refinement), &interrupt)
+    with_ends(&held, found, (branch, point), options, refinement, &interrupt)
 }
 
 /// How far the ends are refined; `None` where no tolerance has chosen the harmonics of the point.
@@ -177,7 +177,7 @@ fn pairs(held: &HeldSliders<'_>) -> Result<Vec<(usize, usize)>> {
 }
 
 /// A band of the held sliders whose ends are still to be filled in.
-fn begun(held: &HeldSliders<'_>, (is_complete, solved): (bool, usize), gains: [f64; 2]) -> Result<Band> {
+fn begun(held: &HeldSliders<'_>, is_complete: bool, solved: usize, gains: [f64; 2]) -> Result<Band> {
     let end = |gain: f64| BandEnd {
         value: f64::NAN,
         omega: f64::NAN,
@@ -201,7 +201,7 @@ fn begun(held: &HeldSliders<'_>, (is_complete, solved): (bool, usize), gains: [f
 fn along(held: &HeldSliders<'_>, first: HeldState) -> Result<Begun> {
     let (mut low, mut high) = (first.clone(), first.clone());
     let line = line(held, first)?;
-    let mut band = begun(held, (line.is_complete, line.solved), [0.0; 2])?;
+    let mut band = begun(held, line.is_complete, line.solved, [0.0; 2])?;
     for (i, state) in line.states.iter().enumerate() {
         if i == 0 || state.value < low.value {
             low = state.clone();
@@ -230,7 +230,7 @@ fn searched(held: &HeldSliders<'_>, first: HeldState, starts: usize) -> Result<B
     let mut gains = [f64::INFINITY; 2];
     let Some(within) = search.within(first)? else {
         return Ok(Begun {
-            band: begun(held, (false, search.solved), [0.0; 2])?,
+            band: begun(held, false, search.solved, [0.0; 2])?,
             ends: [low, high],
             edges: None,
             is_stuck: false,
@@ -262,7 +262,7 @@ fn searched(held: &HeldSliders<'_>, first: HeldState, starts: usize) -> Result<B
         }
     }
     Ok(Begun {
-        band: begun(held, (true, search.solved), gains)?,
+        band: begun(held, true, search.solved, gains)?,
         ends: [low, high],
         edges: None,
         is_stuck: false,

@@ -182,7 +182,7 @@ fn from_other_states<'a>(
         if is_new {
             try_push(&mut known, free, CONTEXT)?;
         }
-        let Some((own, first)) = within_limits(held, (&branch, sliders), interrupt)? else {
+        let Some((own, first)) = within_limits(held, &branch, sliders, interrupt)? else {
             continue;
         };
         for (best, sign) in ends.iter_mut().zip(BAND_SENSES) {
@@ -230,7 +230,8 @@ pub(crate) fn with_ends<'a>(
     held: &HeldSliders<'a>,
     mut begun: Begun,
     at: (&Branch, usize),
-    (options, refinement): (&BandOptions<'_>, Option<Refinement>),
+    options: &BandOptions<'_>,
+    refinement: Option<Refinement>,
     interrupt: &'a Interrupt<'a>,
 ) -> Result<Band> {
     let mut solved = 0;
@@ -248,7 +249,7 @@ pub(crate) fn with_ends<'a>(
         return Ok(begun.band);
     }
     if let Some(refinement) = refinement {
-        solved += refine((held, &mut begun), &mut ends, refinement, interrupt)?;
+        solved += refine(held, &mut begun, &mut ends, refinement, interrupt)?;
     }
     let mut band = begun.band;
     band.solved += solved;
@@ -283,7 +284,8 @@ pub(crate) fn with_ends<'a>(
 
 /// Solves the ends, and the limits of a single free slider, with more harmonics; sets the errors of the ends.
 fn refine<'a>(
-    (held, begun): (&HeldSliders<'a>, &mut Begun),
+    held: &HeldSliders<'a>,
+    begun: &mut Begun,
     ends: &mut [Reached<'a>; 2],
     to: Refinement,
     interrupt: &'a Interrupt<'a>,

@@ -54,8 +54,8 @@ pub(crate) fn refined<'a>(
     let mut found: Option<Finer<'a>> = None;
     loop {
         let next = match &found {
-            Some(last) => doubled(&last.own.held, &last.own.state, (sign, to), interrupt)?,
-            None => doubled(held, state, (sign, to), interrupt)?,
+            Some(last) => doubled(&last.own.held, &last.own.state, sign, to, interrupt)?,
+            None => doubled(held, state, sign, to, interrupt)?,
         };
         let Some((mut own, error)) = next else { return Ok(found) };
         own.solved += found.map_or(0, |last| last.own.solved);
@@ -70,7 +70,8 @@ pub(crate) fn refined<'a>(
 fn doubled<'a>(
     held: &HeldSliders<'a>,
     state: &HeldState,
-    (sign, to): (f64, Refinement),
+    sign: f64,
+    to: Refinement,
     interrupt: &'a Interrupt<'a>,
 ) -> Result<Option<(Grown<'a>, f64)>> {
     let harmonics = 2 * held.solver.harmonics;

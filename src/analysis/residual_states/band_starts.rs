@@ -233,7 +233,8 @@ impl<'a> Starts<'a> {
 /// As [`HeldSliders::first`], those of a missing solution aside.
 pub(crate) fn within_limits<'a>(
     own: &HeldSliders<'a>,
-    (branch, sliders): (&Branch, Vec<StuckSlider>),
+    branch: &Branch,
+    sliders: Vec<StuckSlider>,
     interrupt: &'a Interrupt<'a>,
 ) -> Result<Option<(Rc<HeldSliders<'a>>, HeldState)>> {
     let held = HeldSliders::new(

@@ -15,7 +15,7 @@ use crate::model::matrices::speed::Speed;
 use crate::options::Range;
 use crate::options::{Exchanged, SolverOptions};
 use crate::results::Branch;
-use crate::sensitivity::{ForcedPoint, Parameter, TotalDerivative};
+use crate::sensitivity::{ForcedPoint, Parameter, SampledModel, TotalDerivative};
 
 const CONTEXT: &str = "the freedom of a solution";
 
@@ -59,7 +59,8 @@ impl<'a> FreePoints<'a> {
     pub fn along(
         model: &'a Model,
         branch: &'a Branch,
-        (solver, sweep): (&SolverOptions, Range),
+        solver: &SolverOptions,
+        sweep: Range,
         interrupt: &'a Interrupt<'a>,
     ) -> Self {
         Self {
@@ -83,9 +84,10 @@ impl<'a> FreePoints<'a> {
         if !self.may_be_free(point) {
             return Ok(free);
         }
-        let (condensed, samples) = (branch.condensed_at(point), branch.samples_at(point));
+        let solution = SampledModel::at(branch, point);
+        let SampledModel { condensed, samples } = solution;
         let at_frequency = model.at_frequency(omega)?;
-        let stuck = stuck_contacts(&at_frequency, (condensed, samples), (motion, omega), self.interrupt)?;
+        let stuck = stuck_contacts(&at_frequency, solution, motion, omega, self.interrupt)?;
         if !stuck.others_vibrate || stuck.sliders.is_empty() || condensed.has_exchanges() {
             return Ok(free);
         }
@@ -95,20 +97,24 @@ impl<'a> FreePoints<'a> {
         let mut u = try_vec(own.unknowns(), 0.0, CONTEXT)?;
         own.set()
             .transfer(condensed.set(), motion, condensed.length() / own.length(), &mut u);
-        let mut at = ForcedPoint::new(own, (branch.response_dof(), samples), omega, self.interrupt)?;
+        let mut at = ForcedPoint::new(own, branch.response_dof(), samples, omega, self.interrupt)?;
         if let Some(first) = branch.responses().first().filter(|first| !first.response().is_plain()) {
-            at = at.watching((&first.response(), branch.response_dof()), samples)?;
+            at = at.watching(&first.response(), branch.response_dof(), samples)?;
         }
         let Some(adjoint) = at.adjoint(&u, omega)? else {
             return Ok(free);
         };
         let held_at = held.model.at_frequency(omega)?;
         let (m, mean) = (own.set().packed_len(), usize::from(own.set().has_mean()));
-        let mut total = TotalDerivative::new((&held.model, &*held_at), (own, samples), &adjoint, self.interrupt)?;
+        let held_solution = SampledModel {
+            condensed: own,
+            samples,
+        };
+        let mut total = TotalDerivative::new(&held.model, &held_at, held_solution, &adjoint, self.interrupt)?;
         for of_contact in stuck.sliders.chunk_by(|a, b| a.contact == b.contact) {
             let mut changes = false;
             for slider in of_contact {
-                let change = at.by_slider((slider.coordinate, slider.stiffness), omega)?;
+                let change = at.by_slider(slider.coordinate, slider.stiffness, omega)?;
                 let mut vibrations = change.chunks_exact(m.max(1)).map(|y| norm(&y[mean..]));
                 changes |= vibrations.any(|y| y > FREEDOM_ROUNDING);
             }
@@ -136,7 +142,8 @@ impl<'a> FreePoints<'a> {
         let Some((omega, motion)) = branch.omega_at(point).zip(branch.motion_at(point)) else {
             return Ok(Vec::new());
         };
-        let (condensed, samples) = (branch.condensed_at(point), branch.samples_at(point));
+        let solution = SampledModel::at(branch, point);
+        let condensed = solution.condensed;
         let contacts = model.contacts();
         let is_constant =
             |number: usize| keeps_force(&contacts[number]) && contacts[number].normal_direction().is_none();
@@ -145,7 +152,7 @@ impl<'a> FreePoints<'a> {
             return Ok(Vec::new());
         }
         let at_frequency = model.at_frequency(omega)?;
-        let stuck = stuck_contacts(&at_frequency, (condensed, samples), (motion, omega), self.interrupt)?;
+        let stuck = stuck_contacts(&at_frequency, solution, motion, omega, self.interrupt)?;
         Ok(stuck.sliders)
     }
 
@@ -175,7 +182,7 @@ impl<'a> FreePoints<'a> {
         let known = self.held.take().filter(|held| sweep.is_some() && is_same(held));
         let mut held = match known {
             Some(held) => held,
-            None => self.prepared((model, sweep), sliders, (point, resolution))?,
+            None => self.prepared(model, sweep, sliders, point, resolution)?,
         };
         for slider in sliders {
             held.model.set_slider(slider.contact, slider.direction, slider.place)?;
@@ -187,9 +194,11 @@ impl<'a> FreePoints<'a> {
 
     fn prepared(
         &self,
-        (model, sweep): (&Model, Option<Range>),
+        model: &Model,
+        sweep: Option<Range>,
         sliders: &[StuckSlider],
-        (point, resolution): (usize, usize),
+        point: usize,
+        resolution: usize,
     ) -> Result<HeldContacts> {
         let branch = self.branch;
         let mut held = model.separate_clone()?;

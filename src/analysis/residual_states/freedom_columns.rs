@@ -28,7 +28,7 @@ pub(crate) fn record_freedom(
     if branch.periods() == 1 {
         let interrupt = hooks.interrupt();
         let sweep = Range::new(options.1.omega_start, options.1.omega_stop);
-        let mut points = FreePoints::along(model, branch, (options.0, sweep), &interrupt);
+        let mut points = FreePoints::along(model, branch, options.0, sweep, &interrupt);
         for point in 0..stored {
             let free = match interrupt.part(Phase::Results, point, stored) {
                 Ok(()) => points.at(point),

@@ -16,7 +16,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::model::Model;
 use crate::options::{Exchanged, Response, SolverOptions};
-use crate::sensitivity::{Adjoint, ForcedPoint, Parameter, TotalDerivative, peak_row, peak_shift};
+use crate::sensitivity::{Adjoint, ForcedPoint, Parameter, SampledModel, TotalDerivative, peak_row, peak_shift};
 use std::sync::Arc;
 
 const CONTEXT: &str = "a response with held sliders";
@@ -163,7 +163,7 @@ impl<'a> HeldSliders<'a> {
         for slider in &self.sliders {
             try_push(&mut places, slider.place, CONTEXT)?;
         }
-        self.solution(&places, (set, motion, omega))
+        self.solution(&places, set, motion, omega)
     }
 
     /// The solution of [`Self::solve`]; `None` where it is not found.
@@ -195,10 +195,10 @@ impl<'a> HeldSliders<'a> {
         if !(omega > 0.5 * from.omega && omega < 2.0 * from.omega) {
             return fail!(NoConvergence, "a held slider is too far from the last one");
         }
-        self.solution(places, (&from.set, &motion, omega))
+        self.solution(places, &from.set, &motion, omega)
     }
 
-    fn solution(&self, places: &[f64], (set, motion, mut omega): (&HarmonicSet, &[f64], f64)) -> Result<HeldState> {
+    fn solution(&self, places: &[f64], set: &HarmonicSet, motion: &[f64], mut omega: f64) -> Result<HeldState> {
         let model = self.placed(&self.held, places)?;
         let condensed = Condensed::with_reference(&model, &self.solver, (omega, omega), None, self.interrupt)?;
         let length = condensed.length();
@@ -216,8 +216,11 @@ impl<'a> HeldSliders<'a> {
         let at_frequency = model.at_frequency(omega)?;
         let samples = self.solver.samples;
         let by_places = |adjoint: &Adjoint, values: &mut [f64]| -> Result<()> {
-            let solution = (&condensed, samples);
-            let mut total = TotalDerivative::new((&model, &*at_frequency), solution, adjoint, self.interrupt)?;
+            let solution = SampledModel {
+                condensed: &condensed,
+                samples,
+            };
+            let mut total = TotalDerivative::new(&model, &at_frequency, solution, adjoint, self.interrupt)?;
             for (value, slider) in values.iter_mut().zip(&self.sliders) {
                 let parameter = Parameter::Contact {
                     constant: Constant::Slider(slider.direction),
@@ -231,7 +234,7 @@ impl<'a> HeldSliders<'a> {
         let mut gradient = try_vec(count, 0.0, CONTEXT)?;
         by_places(&adjoint, &mut gradient)?;
         let omega_by_place = if is_peak {
-            peak_shift(&mut point, (&u, omega, adjoint.amplitude), count, by_places)?
+            peak_shift(&mut point, &u, omega, adjoint.amplitude, count, by_places)?
         } else {
             try_vec(count, 0.0, CONTEXT)?
         };
@@ -242,7 +245,7 @@ impl<'a> HeldSliders<'a> {
         let mut by_place = Vec::new();
         for (j, slider) in sliders.iter_mut().enumerate() {
             slider.place = places[j];
-            let mut change = point.by_slider((slider.coordinate, slider.stiffness), omega)?;
+            let mut change = point.by_slider(slider.coordinate, slider.stiffness, omega)?;
             for (c, t) in change.iter_mut().zip(&tangent) {
                 // The motions are in the solver's unit of lengths, the places are not.
                 *c += length * t * omega_by_place[j];
@@ -284,9 +287,9 @@ impl<'a> HeldSliders<'a> {
         'a: 'c,
     {
         let samples = self.solver.samples;
-        let point = ForcedPoint::new(condensed, (self.response_dof, samples), omega, self.interrupt)?;
+        let point = ForcedPoint::new(condensed, self.response_dof, samples, omega, self.interrupt)?;
         match &self.response {
-            Some(response) => point.watching((response, self.response_dof), samples),
+            Some(response) => point.watching(response, self.response_dof, samples),
             None => Ok(point),
         }
     }

@@ -14,6 +14,7 @@ use crate::model::Model;
 use crate::options::{ModeChoice, ModeOptions, SolverOptions};
 use crate::results::Branch;
 use crate::results::stored::mode_branch::ModeField;
+use crate::sensitivity::SampledModel;
 
 const CONTEXT: &str = "the band of a nonlinear mode";
 
@@ -177,7 +178,7 @@ pub fn mode_band(
             let before = search.value(&best);
             for k in 0..sliders.len() {
                 let keep = (sliders.len() == 1 && sign > 0.0).then_some(&mut band.states);
-                best = search.along(best, (k, sign), keep)?;
+                best = search.along(best, k, sign, keep)?;
             }
             if (search.value(&best) - before).abs() <= MODE_BAND_ENOUGH * before.abs() {
                 break;
@@ -221,8 +222,8 @@ fn sliders_of(
     branch.check_model(model)?;
     interrupt.phase(Phase::Results, 0.0)?;
     let at_frequency = model.at_frequency(omega)?;
-    let solution = (branch.condensed_at(point), branch.samples_at(point));
-    let mut stuck = stuck_contacts(&at_frequency, solution, (motion, omega), interrupt)?;
+    let solution = SampledModel::at(branch, point);
+    let mut stuck = stuck_contacts(&at_frequency, solution, motion, omega, interrupt)?;
     if !stuck.others_vibrate {
         stuck.sliders.clear();
     }
@@ -286,8 +287,8 @@ impl ModeBandSearch<'_> {
             return Ok(None);
         };
         let omega = found.omega()[0];
-        let solution = (found.condensed_at(0), found.samples_at(0));
-        let stuck = stuck_contacts(&model, solution, (motion, omega), self.interrupt)?;
+        let solution = SampledModel::at(&found, 0);
+        let stuck = stuck_contacts(&model, solution, motion, omega, self.interrupt)?;
         let slider = &self.sliders[k];
         let own = |one: &&StuckSlider| (one.contact, one.direction) == (slider.contact, slider.direction);
         let place = stuck.sliders.iter().find(own).map(|one| one.place);
@@ -307,7 +308,8 @@ impl ModeBandSearch<'_> {
     fn along(
         &mut self,
         from: ModeBandState,
-        (k, sign): (usize, f64),
+        k: usize,
+        sign: f64,
         mut keep: Option<&mut Vec<ModeBandState>>,
     ) -> Result<ModeBandState> {
         let middle = from.places[k];

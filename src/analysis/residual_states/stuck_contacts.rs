@@ -2,12 +2,12 @@
 //! is free.
 
 use crate::aft::{Evaluation, Evaluator};
-use crate::condense::Condensed;
 use crate::contact::forms::constants::Constant;
 use crate::contact::{Contact, Role};
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
+use crate::sensitivity::SampledModel;
 
 const CONTEXT: &str = "the contacts that stick";
 
@@ -50,8 +50,9 @@ pub(crate) fn keeps_force(contact: &Contact) -> bool {
 /// Those of the laws; `OutOfMemory`; `StoppedByCaller`.
 pub(crate) fn stuck_contacts(
     model: &Model,
-    (condensed, samples): (&Condensed, usize),
-    (motion, omega): (&[f64], f64),
+    SampledModel { condensed, samples }: SampledModel<'_>,
+    motion: &[f64],
+    omega: f64,
     interrupt: &Interrupt<'_>,
 ) -> Result<Stuck> {
     let mut stuck = Stuck {

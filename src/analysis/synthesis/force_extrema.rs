@@ -38,7 +38,8 @@ pub(super) fn find(refinement: &mut Refinement<'_>, states: &[State], found: &mu
         let sign = if is_maximum { -1.0 } else { 1.0 };
         let (p, f) = minimum(
             refinement,
-            (k, p1),
+            k,
+            p1,
             [(p0, sign * f0), (p1, sign * f1), (p2, sign * f2)],
             sign,
         )?;
@@ -57,7 +58,7 @@ pub(super) fn find(refinement: &mut Refinement<'_>, states: &[State], found: &mu
                 ((k, (p1, f1)), (k, (p2, f2)))
             };
             for (side, end) in [below, above] {
-                if let Some(state) = crossing(refinement, side, (extreme, end))?
+                if let Some(state) = crossing(refinement, side, extreme, end)?
                     && let Some(at) = state.at_peak()
                 {
                     found.push(refinement, &state, at.omega)?;
@@ -69,11 +70,7 @@ pub(super) fn find(refinement: &mut Refinement<'_>, states: &[State], found: &mu
 }
 
 /// The state at which the factor of the force is 1, between two amplitudes with log factors of opposite sign.
-fn crossing(
-    refinement: &mut Refinement<'_>,
-    k: usize,
-    (mut a, mut b): ((f64, f64), (f64, f64)),
-) -> Result<Option<State>> {
+fn crossing(refinement: &mut Refinement<'_>, k: usize, mut a: (f64, f64), mut b: (f64, f64)) -> Result<Option<State>> {
     let mut found = None;
     for _ in 0..FORCE_EXTREMA_MAX_EVALUATIONS {
         let p = 0.5 * (a.0 + b.0);
@@ -96,7 +93,8 @@ fn crossing(
 /// these do not help.
 fn minimum(
     refinement: &mut Refinement<'_>,
-    (k, at): (usize, f64),
+    k: usize,
+    at: f64,
     [mut a, mut b, mut c]: [(f64, f64); 3],
     sign: f64,
 ) -> Result<(f64, f64)> {

@@ -10,14 +10,14 @@ use crate::capi::crossing::indices::index;
 use crate::capi::crossing::outcome::Outcome;
 use crate::capi::crossing::thread_start::together;
 use crate::capi::crossing::versioned_struct::{VersionedStruct, check_reserved, init, load};
-use crate::capi::design::sensitivities::{hbvib_parameter, loaded, parameter};
+use crate::capi::design::sensitivities::{all_parameters, hbvib_parameter, loaded, parameter_count};
 use crate::capi::solving::solve::hbvib_branch;
 use crate::capi::solving::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
 use crate::capi::solving::solve_options::{hbvib_solver_options, solver_options};
 use crate::capi::solving::solve_responses::{Watched, hbvib_response};
 use crate::capi::structures::model::hbvib_model;
 use crate::capi::version_and_errors::hbvib_status;
-use crate::error::{Result, Status, fail, try_push};
+use crate::error::{Result, Status, fail};
 use crate::model::Model;
 use crate::options::{BatchOptions, MOST_THREADS, Response, check_responses};
 use crate::studies::DesignPeak;
@@ -146,19 +146,9 @@ pub unsafe extern "C" fn hbvib_batch_solve(
         check_responses(&responses, model.ndof(), model.structure().sectors()).with_argument(3)?;
         let options = batch_options(&o, &responses).with_argument(3)?;
         let hooks = unsafe { load_hooks(hooks, 4) }?;
-        let count = crate::capi::crossing::arrays::count(count, 6, "count")?;
-        if count == 0 {
-            return fail!(Dimension, "count = 0, needs at least one parameter").with_argument(6);
-        }
+        let count = parameter_count(count)?;
         let given = unsafe { loaded(parameters, count) }?;
-        let mut described = Vec::new();
-        for one in &given {
-            try_push(
-                &mut described,
-                unsafe { parameter(one, model.ndof()) }?,
-                "the parameters",
-            )?;
-        }
+        let described = unsafe { all_parameters(&given, &model) }?;
         let designs = crate::capi::crossing::arrays::count(designs, 7, "designs")?;
         let values = unsafe { input(values, designs.saturating_mul(count), 8, "values") }?;
         check_pointer(out, 9, "out")?;

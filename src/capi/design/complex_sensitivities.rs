@@ -7,13 +7,13 @@ use crate::capi::crossing::arrays::{Range, check_pointer, disjoint, exact_len, o
 use crate::capi::crossing::boundary::{WithArgument, call};
 use crate::capi::crossing::handles::{KeptBranch, read};
 use crate::capi::crossing::indices::index;
-use crate::capi::design::sensitivities::{hbvib_parameter, loaded, parameter, reason_number};
+use crate::capi::design::sensitivities::{all_parameters, hbvib_parameter, loaded, parameter_count, reason_number};
 use crate::capi::solving::solve::hbvib_branch;
 use crate::capi::solving::solve_hooks::{hbvib_hooks, load_hooks, with_interrupt};
 use crate::capi::solving::solve_responses::{Watched, hbvib_response};
 use crate::capi::structures::model::hbvib_model;
 use crate::capi::version_and_errors::hbvib_status;
-use crate::error::{Status, fail, try_push};
+use crate::error::Status;
 use crate::model::Model;
 use crate::options::Response;
 use crate::sensitivity::Reason;
@@ -70,19 +70,9 @@ pub unsafe extern "C" fn hbvib_response_sensitivity(
             unsafe { Watched::new(response, i64::from(!response.is_null()), model.ndof(), 4) }.with_argument(4)?;
         let responses = unsafe { watched.responses(4) }.with_argument(4)?;
         let response = responses.first().copied().unwrap_or_else(Response::default);
-        let count = crate::capi::crossing::arrays::count(count, 6, "count")?;
-        if count == 0 {
-            return fail!(Dimension, "count = 0, needs at least one parameter").with_argument(6);
-        }
+        let count = parameter_count(count)?;
         let given = unsafe { loaded(parameters, count) }?;
-        let mut described = Vec::new();
-        for one in &given {
-            try_push(
-                &mut described,
-                unsafe { parameter(one, model.ndof()) }?,
-                "the parameters",
-            )?;
-        }
+        let described = unsafe { all_parameters(&given, &model) }?;
         let len = exact_len(derivatives_len, count, 8, "count")?;
         let hooks = unsafe { load_hooks(hooks, 13) }?;
         let number = |p: *mut f64| if p.is_null() { 0 } else { 2 };

@@ -8,14 +8,13 @@ use crate::capi::crossing::handles::{insert, read};
 use crate::capi::crossing::outcome::Outcome;
 use crate::capi::crossing::versioned_struct::{VersionedStruct, check_out, check_reserved, fill_out, init, load};
 use crate::capi::design::fit_data::{Described, hbvib_data};
-use crate::capi::design::sensitivities::{hbvib_parameter, loaded, parameter};
+use crate::capi::design::sensitivities::{all_parameters, hbvib_parameter, loaded, parameter_count};
 use crate::capi::solving::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
 use crate::capi::solving::solve_options::{hbvib_solver_options, solver_options};
 use crate::capi::structures::model::hbvib_model;
 use crate::capi::version_and_errors::hbvib_status;
 use crate::error::{Error, Result, Status, fail, try_push};
 use crate::model::Model;
-use crate::sensitivity::Parameter;
 use crate::studies::{self, Fit, FitOptions, Loss, Scale, Suspicion, Unknown};
 
 /// Scale in which an unknown of a fit is changed.
@@ -425,25 +424,6 @@ pub unsafe extern "C" fn hbvib_predict(
         }
         Ok(Status::Ok)
     })
-}
-
-pub(crate) fn parameter_count(count: i64) -> Result<usize> {
-    match crate::capi::crossing::arrays::count(count, 6, "count")? {
-        0 => fail!(Dimension, "count = 0, needs at least one parameter").with_argument(6),
-        count => Ok(count),
-    }
-}
-
-pub(crate) unsafe fn all_parameters<'a>(given: &'a [hbvib_parameter], model: &Model) -> Result<Vec<Parameter<'a>>> {
-    let mut described = Vec::new();
-    for one in given {
-        try_push(
-            &mut described,
-            unsafe { parameter(one, model.ndof()) }?,
-            "the parameters",
-        )?;
-    }
-    Ok(described)
 }
 
 /// The options of argument 3; NULL: the defaults.

@@ -6,11 +6,9 @@ use crate::capi::crossing::arrays::{Range, count, disjoint, input, output};
 use crate::capi::crossing::boundary::{WithArgument, call};
 use crate::capi::crossing::handles::read;
 use crate::capi::crossing::versioned_struct::{VersionedStruct, check_out, fill_out, init};
-use crate::capi::design::fit::{
-    all_parameters, all_unknowns, chosen_options, hbvib_fit_options, hbvib_unknown, parameter_count,
-};
+use crate::capi::design::fit::{all_unknowns, chosen_options, hbvib_fit_options, hbvib_unknown};
 use crate::capi::design::fit_data::{Described, hbvib_data};
-use crate::capi::design::sensitivities::{hbvib_parameter, loaded};
+use crate::capi::design::sensitivities::{all_parameters, hbvib_parameter, loaded, parameter_count};
 use crate::capi::solving::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
 use crate::capi::solving::solve_options::{hbvib_solver_options, solver_options};
 use crate::capi::structures::model::hbvib_model;

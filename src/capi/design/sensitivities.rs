@@ -184,19 +184,9 @@ pub unsafe extern "C" fn hbvib_sensitivity(
         let kept = read::<KeptBranch>(branch, 2)?;
         let point = index(point, kept.branch.stored(), 3, "point")?;
         let of = quantity(of).with_argument(4)?;
-        let count = crate::capi::crossing::arrays::count(count, 6, "count")?;
-        if count == 0 {
-            return fail!(Dimension, "count = 0, needs at least one parameter").with_argument(6);
-        }
+        let count = parameter_count(count)?;
         let given = unsafe { loaded(parameters, count) }?;
-        let mut described = Vec::new();
-        for one in &given {
-            try_push(
-                &mut described,
-                unsafe { parameter(one, model.ndof()) }?,
-                "the parameters",
-            )?;
-        }
+        let described = unsafe { all_parameters(&given, &model) }?;
         let hooks = unsafe { load_hooks(hooks, 11) }?;
         let len = exact_len(derivatives_len, count, 8, "count")?;
         let reasons_len = if reasons.is_null() { 0 } else { count };
@@ -235,6 +225,30 @@ pub unsafe extern "C" fn hbvib_sensitivity(
         }
         Ok(Status::Ok)
     })
+}
+
+/// Number of parameters, argument 6.
+pub(crate) fn parameter_count(count: i64) -> Result<usize> {
+    match crate::capi::crossing::arrays::count(count, 6, "count")? {
+        0 => fail!(Dimension, "count = 0, needs at least one parameter").with_argument(6),
+        count => Ok(count),
+    }
+}
+
+/// The parameters described for a model.
+///
+/// # Safety
+/// The caller of the C function states that the directions of the parameters lie where they say.
+pub(crate) unsafe fn all_parameters<'a>(given: &'a [hbvib_parameter], model: &Model) -> Result<Vec<Parameter<'a>>> {
+    let mut described = Vec::new();
+    for one in given {
+        try_push(
+            &mut described,
+            unsafe { parameter(one, model.ndof()) }?,
+            "the parameters",
+        )?;
+    }
+    Ok(described)
 }
 
 /// The parameters of an array whose distance is the size that the first one states.

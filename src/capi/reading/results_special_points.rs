@@ -33,12 +33,7 @@ pub unsafe extern "C" fn hbvib_branch_peaks(
 ) -> hbvib_status {
     call(|| {
         let kept = read::<KeptBranch>(branch, 1)?;
-        let lists = Lists {
-            omega: (omega, 3),
-            amplitude: (amplitude, 4),
-            point: (point, 5),
-            count: (count, 6),
-        };
+        let lists = Lists::after_capacity(omega, amplitude, point, count);
         unsafe { lists.fill(kept.branch.peaks(), (capacity, 2)) }
     })
 }
@@ -58,12 +53,7 @@ pub unsafe extern "C" fn hbvib_branch_folds(
 ) -> hbvib_status {
     call(|| {
         let kept = read::<KeptBranch>(branch, 1)?;
-        let lists = Lists {
-            omega: (omega, 3),
-            amplitude: (amplitude, 4),
-            point: (point, 5),
-            count: (count, 6),
-        };
+        let lists = Lists::after_capacity(omega, amplitude, point, count);
         unsafe { lists.fill(kept.branch.folds(), (capacity, 2)) }
     })
 }
@@ -110,6 +100,16 @@ pub(crate) struct Lists {
 }
 
 impl Lists {
+    /// The arrays of a function whose arguments begin with a branch and a capacity.
+    fn after_capacity(omega: *mut f64, amplitude: *mut f64, point: *mut i64, count: *mut i64) -> Self {
+        Self {
+            omega: (omega, 3),
+            amplitude: (amplitude, 4),
+            point: (point, 5),
+            count: (count, 6),
+        }
+    }
+
     /// Writes the special points if `capacity`, the argument of the given number, suffices.
     ///
     /// # Safety

@@ -46,7 +46,8 @@ impl Continuation {
         &mut self,
         problem: &mut dyn Problem,
         metric: Metric,
-        (depth, step): (f64, f64),
+        depth: f64,
+        step: f64,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Point>> {
         let mut probe = try_copy(&self.current.v, CONTEXT)?;
@@ -253,7 +254,7 @@ impl Continuation {
         let smallest = self.steps.smallest();
         let deep = WIDE_CORNERS.map(|length| (length, length));
         for (depth, length) in deep.into_iter().chain(WIDE_CORNERS.map(|length| (smallest, length))) {
-            if let Some(point) = self.turn_corner(problem, metric, (depth, length), interrupt)? {
+            if let Some(point) = self.turn_corner(problem, metric, depth, length, interrupt)? {
                 self.steps.restart(length);
                 return Ok(Some(point));
             }

@@ -29,7 +29,8 @@ impl Continuation {
     pub(super) fn crossed(
         &self,
         problem: &mut dyn Problem,
-        (point, length): (&Point, f64),
+        point: &Point,
+        length: f64,
         known: &[LinearResonance],
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<f64>> {
@@ -57,7 +58,7 @@ impl Continuation {
                 Some(known) => known,
                 None => locator.insert(Locator::new(n, self.settings)?),
             };
-            if !self.is_met(locator, problem, (point, place), interrupt)? {
+            if !self.is_met(locator, problem, point, place, interrupt)? {
                 share = Some((resonance.at - from) / (to - from));
                 break;
             }
@@ -76,7 +77,8 @@ impl Continuation {
         &self,
         locator: &mut Locator,
         problem: &mut dyn Problem,
-        (point, place): (&Point, f64),
+        point: &Point,
+        place: f64,
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
         let ends = (&self.current, point);

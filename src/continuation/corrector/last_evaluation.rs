@@ -31,7 +31,8 @@ impl Corrector {
     pub(super) fn ends_by_earlier_factors(
         &mut self,
         problem: &mut dyn Problem,
-        (v, last_step): (&[f64], f64),
+        v: &[f64],
+        last_step: f64,
         (metric, row): (Metric, &[f64]),
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
@@ -51,7 +52,7 @@ impl Corrector {
             return Ok(false);
         }
         let is_near = norm(&self.memory.step[..n]) * metric.u <= NEAR * norm(&v[..n]);
-        Ok(is_near && self.refine_tangent(problem, (metric, row), interrupt)?)
+        Ok(is_near && self.refine_tangent(problem, metric, row, interrupt)?)
     }
 
     /// Computes the tangent of the current matrix in `next` by iteration with the factors of an earlier one; `false`
@@ -59,7 +60,8 @@ impl Corrector {
     fn refine_tangent(
         &mut self,
         problem: &mut dyn Problem,
-        (metric, row): (Metric, &[f64]),
+        metric: Metric,
+        row: &[f64],
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
         let n = self.memory.next.len() - 1;

@@ -50,7 +50,7 @@ pub(crate) fn null_direction(
         corrector.factors = Factors::None;
         corrector.update(problem, metric, &row, interrupt)?;
         if corrector.factor(problem, interrupt)? {
-            return inverse_iteration(corrector, problem, (start, &row), metric, interrupt);
+            return inverse_iteration(corrector, problem, start, &row, metric, interrupt);
         }
     }
     Ok(None)
@@ -59,7 +59,8 @@ pub(crate) fn null_direction(
 fn inverse_iteration(
     corrector: &mut Corrector,
     problem: &mut dyn Problem,
-    (start, row): (&[f64], &[f64]),
+    start: &[f64],
+    row: &[f64],
     metric: Metric,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<(Vec<f64>, f64)>> {

@@ -23,10 +23,12 @@ const DIGITS: f64 = 1e-6;
 /// `Dimension` for another number of positions, `NotFinite`; `Argument` for a node on the axis, an angle between
 /// the faces that contradicts `sense` and `sectors`, or nodes that are no image of each other, naming the pair.
 pub(crate) fn check_coordinates(
-    (left, right): (Positions<'_>, Positions<'_>),
+    left: Positions<'_>,
+    right: Positions<'_>,
     pairs: usize,
     axis: [f64; 3],
-    (forward, sectors): (bool, usize),
+    forward: bool,
+    sectors: usize,
 ) -> Result<()> {
     let mut size = 0.0_f64;
     for (name, positions) in [("left", left), ("right", right)] {

@@ -134,7 +134,7 @@ impl Faces {
         faces.sort(sector.ndof)?;
         faces.regular = faces.is_regular();
         if let Some((left, right)) = sector.coordinates {
-            check_coordinates((left, right), faces.pairs(), axis, (sector.forward, sector.sectors))?;
+            check_coordinates(left, right, faces.pairs(), axis, sector.forward, sector.sectors)?;
         }
         Ok(faces)
     }

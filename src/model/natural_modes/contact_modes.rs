@@ -107,7 +107,7 @@ impl ContactModes {
             released.lowest((modes / 2).clamp(1, n), interrupt)?,
         ];
         let [stuck, free] = both.map(|found| found.shapes);
-        let shapes = joined(&stuck, &free, (modes.min(n), is_real), pencil.weight(), interrupt)?;
+        let shapes = joined(&stuck, &free, modes.min(n), is_real, pencil.weight(), interrupt)?;
         let (omega, shapes) = ritz(&shapes, &pencil.stiffness, is_real, interrupt)?;
         let mut motions = Vec::new();
         for contact in contacts {
@@ -216,7 +216,8 @@ impl ContactModes {
 fn joined(
     stuck: &[Complex64],
     free: &[Complex64],
-    (count, is_real): (usize, bool),
+    count: usize,
+    is_real: bool,
     mass: &Csc,
     interrupt: &Interrupt<'_>,
 ) -> Result<Vec<Complex64>> {

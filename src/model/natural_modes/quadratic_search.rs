@@ -70,13 +70,13 @@ pub fn lowest_by_search(
     };
     let covered = first.covered();
     for side in [-1.0, 1.0] {
-        if is_bounded(problem, hermitian, (side, covered), interrupt)? {
+        if is_bounded(problem, hermitian, side, covered, interrupt)? {
             continue;
         }
         let mut inside = covered;
         while inside < FARTHEST * first.height {
             let outside = WIDER * inside;
-            let Some(found) = aside(problem, &first, (side, inside, outside), interrupt)? else {
+            let Some(found) = aside(problem, &first, side, inside, outside, interrupt)? else {
                 if problem.mass.rows <= DENSE_IF_HARD {
                     return Ok(None);
                 }
@@ -247,7 +247,9 @@ fn operator<'a>(problem: &Quadratic<'a>, shift: Complex64, interrupt: &'a Interr
 fn aside(
     problem: &Quadratic<'_>,
     first: &Disc,
-    (side, inside, outside): (f64, f64, f64),
+    side: f64,
+    inside: f64,
+    outside: f64,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<Vec<Pair>>> {
     let shift = Complex64::new(side * 0.5 * (inside + outside), 0.5 * first.height);
@@ -278,7 +280,8 @@ fn aside(
 fn is_bounded(
     problem: &Quadratic<'_>,
     hermitian: &Csc,
-    (side, covered): (f64, f64),
+    side: f64,
+    covered: f64,
     interrupt: &Interrupt<'_>,
 ) -> Result<bool> {
     let n = problem.mass.rows;

@@ -124,18 +124,18 @@ fn load_degrees(structure: &Structure, input: &mut ByteReader<'_>) -> Result<Deg
         return DegreeMap::new(fixed, None);
     }
     if structure.sectors > 1 {
-        let faces = load_faces(structure, (ndof, structure.sectors), input)?;
+        let faces = load_faces(structure, ndof, structure.sectors, input)?;
         return DegreeMap::new(fixed, Some(faces));
     }
     let (sectors, of_sector) = (input.count()?, input.count()?);
     if sectors < 2 || of_sector.checked_mul(sectors).is_none_or(|all| all > ndof) {
         return Err(input.damaged("the sectors of a wheel are more than its degrees of freedom"));
     }
-    let faces = load_faces(structure, (of_sector, sectors), input)?;
+    let faces = load_faces(structure, of_sector, sectors, input)?;
     DegreeMap::of_wheel(fixed, faces, of_sector)
 }
 
-fn load_faces(structure: &Structure, (ndof, sectors): (usize, usize), input: &mut ByteReader<'_>) -> Result<Faces> {
+fn load_faces(structure: &Structure, ndof: usize, sectors: usize, input: &mut ByteReader<'_>) -> Result<Faces> {
     let components = input.count()?;
     let frame = if input.bool()? {
         SectorFrame::Cylindrical

@@ -235,7 +235,8 @@ impl ContactForces<'_> {
         motion: usize,
         flexibility: &[Complex64],
         change: &mut [f64],
-        (columns, n): (&mut [f64], usize),
+        columns: &mut [f64],
+        n: usize,
     ) -> Result<()> {
         let set = self.condensed.set();
         let (m, harmonics) = (set.packed_len(), set.numbers().len());
@@ -275,8 +276,10 @@ impl ContactForces<'_> {
     /// motion in harmonic i alone. `flexibility` holds the columns of G at a distance of `stride` numbers.
     pub fn add_mean_coupling(
         &self,
-        (motion, i): (usize, usize),
-        (flexibility, stride): (&[Complex64], usize),
+        motion: usize,
+        i: usize,
+        flexibility: &[Complex64],
+        stride: usize,
         column: &mut [Complex64],
     ) {
         let set = self.condensed.set();

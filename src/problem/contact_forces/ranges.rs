@@ -36,7 +36,7 @@ impl ContactForces<'_> {
             let Some(found) = self.memory.found.get_mut(at.len() - 1).and_then(Option::as_mut) else {
                 continue;
             };
-            let y = gather_scaled(at, (m, here.of_motion), motion, &mut self.memory.gathered);
+            let y = gather_scaled(at, m, here.of_motion, motion, &mut self.memory.gathered);
             if at.len() == 1 {
                 self.evaluator.prepare(set, y, self.interrupt)?;
                 other.prepare(set, y, self.interrupt)?;

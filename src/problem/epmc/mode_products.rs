@@ -123,7 +123,7 @@ impl MatrixFree for Epmc<'_> {
         for (motion, column) in matrix.chunks_exact_mut(coordinates.max(1)).enumerate() {
             column[motion] = Complex64::ONE;
             self.forces
-                .add_mean_coupling((motion, i), (&self.derivatives.tables[i], coordinates), column);
+                .add_mean_coupling(motion, i, &self.derivatives.tables[i], coordinates, column);
         }
     }
 

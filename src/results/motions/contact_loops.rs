@@ -101,7 +101,7 @@ impl<'a> Orbit<'a> {
     /// `OutOfMemory`; those of callbacks; `NoConvergence` for a law whose states do not become periodic; `StoppedByCaller`.
     pub fn follow(&self, n: usize, interrupt: &Interrupt<'_>) -> Result<Follower<'a>> {
         match self.maker {
-            Maker::Law(law) => Follower::of_law((self.motion, self.actual), n, (law, self.samples), interrupt),
+            Maker::Law(law) => Follower::of_law(self.motion, self.actual, n, law, self.samples, interrupt),
             Maker::Spring(stiffness) => Ok(Follower::of_spring(self.motion, n, stiffness)),
         }
     }

@@ -277,11 +277,11 @@ impl Branch {
                 return of.push_kink(Special { amplitude, ..special });
             }
             SpecialKind::Fold => {
-                self.push_bifurcation((BifurcationKind::Fold, [None; 2]), after, special)?;
+                self.push_bifurcation(BifurcationKind::Fold, [None; 2], after, special)?;
                 &mut self.special.folds
             }
             SpecialKind::Bifurcation(kind, unstable) => {
-                return self.push_bifurcation((kind, unstable), after, special);
+                return self.push_bifurcation(kind, unstable, after, special);
             }
             SpecialKind::LimitCycle { slope } => {
                 return try_push(&mut self.special.limit_cycles, (special, slope), "the limit cycles");
@@ -298,7 +298,8 @@ impl Branch {
 
     fn push_bifurcation(
         &mut self,
-        (kind, unstable): (BifurcationKind, [Option<usize>; 2]),
+        kind: BifurcationKind,
+        unstable: [Option<usize>; 2],
         after: usize,
         special: Special,
     ) -> Result<()> {

@@ -66,7 +66,7 @@ pub(crate) struct ParameterData {
 
 impl ParameterData {
     /// Stores the numbers of a point, or nothing if memory is exhausted.
-    pub fn push(&mut self, parameter: f64, (d_amplitude, d_damping): (f64, f64)) -> Result<()> {
+    pub fn push(&mut self, parameter: f64, d_amplitude: f64, d_damping: f64) -> Result<()> {
         const CONTEXT: &str = "the points of the branch";
         for numbers in [&mut self.parameter, &mut self.d_amplitude, &mut self.d_damping] {
             numbers.try_reserve(1).map_err(|_| Error::out_of_memory(CONTEXT))?;

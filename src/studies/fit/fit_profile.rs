@@ -100,7 +100,7 @@ pub fn fit_profile(
     let interrupt = hooks.interrupt();
     interrupt.phase(Phase::Results, 0.0)?;
     let own = model.separate_clone()?;
-    let predictor = predictor(&own, (parameters, &all.scopes), data, solver, &interrupt);
+    let predictor = predictor(&own, parameters, &all.scopes, data, solver, &interrupt);
     let search = FitSearch {
         predictor: &predictor,
         unknowns: &all,
@@ -135,7 +135,7 @@ pub fn fit_profile(
         if is_first {
             near.copy_from_slice(of.theta);
         }
-        let fixed = of.held(unknowns, (&near, of.values[i]))?;
+        let fixed = of.held(unknowns, &near, of.values[i])?;
         let held = Unknowns::new(model, (parameters, &fixed), data.len())
             .map_err(|e| e.at(format_args!("values[{i}] = {}", of.values[i])))?;
         let search = FitSearch {
@@ -253,7 +253,7 @@ impl Profiled<'_> {
 
     /// The unknowns with starts near the given values, and with the scanned one and all unknowns tied to it held at
     /// `value`.
-    fn held(&self, unknowns: &[Unknown], (near, value): (&[f64], f64)) -> Result<Vec<Unknown>> {
+    fn held(&self, unknowns: &[Unknown], near: &[f64], value: f64) -> Result<Vec<Unknown>> {
         let leader = Self::leader(unknowns, self.number);
         let factor = value / near[self.number];
         let mut theta = try_copy(near, CONTEXT)?;

@@ -201,7 +201,7 @@ impl FitSearch<'_> {
             let (h, g) = self.normal_equations(&state, true)?;
             let n = g.len();
             let moves = self.moves(&state.z, &g)?;
-            let mut step = marquardt_step((&h, &g), lambda, &moves, interrupt)?;
+            let mut step = marquardt_step(&h, &g, lambda, &moves, interrupt)?;
             let mut z = crate::error::try_copy(&state.z, CONTEXT)?;
             for (k, free) in self.unknowns.free.iter().enumerate() {
                 if free.is_log {

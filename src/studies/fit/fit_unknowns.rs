@@ -164,7 +164,7 @@ impl Unknowns {
             let start = unknown.start.unwrap_or_else(|| present(model, parameter));
             try_push(&mut starts, start, CONTEXT)?;
             let entry = found
-                .entry(parameter, unknown, (i, start), &starts)
+                .entry(parameter, unknown, i, start, &starts)
                 .map_err(|e| e.at(format_args!("unknown {i}, {}", Named(parameter))))?;
             try_push(&mut found.entries, entry, CONTEXT)?;
             try_push(&mut found.scopes, unknown.data_set, CONTEXT)?;
@@ -176,7 +176,8 @@ impl Unknowns {
         &mut self,
         parameter: &Parameter<'_>,
         unknown: &Unknown,
-        (i, start): (usize, f64),
+        i: usize,
+        start: f64,
         starts: &[f64],
     ) -> Result<Entry> {
         if let Some(leader) = unknown.tied_to {

@@ -15,7 +15,8 @@ const STEP_FLOOR: f64 = 1e-14;
 /// # Errors
 /// `OutOfMemory`, `StoppedByCaller`, `Singular`.
 pub(super) fn marquardt_step(
-    (h, g): (&[f64], &[f64]),
+    h: &[f64],
+    g: &[f64],
     lambda: f64,
     moves: &[bool],
     interrupt: &Interrupt<'_>,

@@ -272,8 +272,8 @@ impl Predictor<'_> {
                         } else {
                             Quantity::ResponsePeakOmega(0)
                         };
-                        self.rows_of(model, (&branch, peak.point), (of_amplitude, 2 * i), &mut into)?;
-                        self.rows_of(model, (&branch, peak.point), (of_omega, 2 * i + 1), &mut into)?;
+                        self.rows_of(model, &branch, peak.point, (of_amplitude, 2 * i), &mut into)?;
+                        self.rows_of(model, &branch, peak.point, (of_omega, 2 * i + 1), &mut into)?;
                     }
                     peak.point
                 }
@@ -297,16 +297,16 @@ impl Predictor<'_> {
                         } else {
                             Quantity::Response(0)
                         };
-                        self.rows_of(model, (&branch, special.point), (of, 2 * i), &mut into)?;
+                        self.rows_of(model, &branch, special.point, (of, 2 * i), &mut into)?;
                     }
                     special.point
                 }
-                _ => match self.complex_row(model, (&branch, i, &mut equations), (set, datum), &mut into)? {
+                _ => match self.complex_row(model, (&branch, i, &mut equations), set, datum, &mut into)? {
                     Some(point) => point,
                     None => return Ok(false),
                 },
             };
-            note(&branch, found, (set, i), &mut into);
+            note(&branch, found, set, i, &mut into);
         }
         Ok(true)
     }
@@ -316,7 +316,8 @@ impl Predictor<'_> {
         &'b self,
         model: &Model,
         (branch, i, equations): (&'b Branch, usize, &mut Equations<'b>),
-        (set, datum): (&FitData<'_>, Option<Complex64>),
+        set: &FitData<'_>,
+        datum: Option<Complex64>,
         into: &mut Into<'_>,
     ) -> Result<Option<usize>> {
         let p = self.parameters.len();
@@ -379,7 +380,8 @@ impl Predictor<'_> {
     fn rows_of(
         &self,
         model: &Model,
-        (branch, point): (&Branch, usize),
+        branch: &Branch,
+        point: usize,
         (of, row): (Quantity, usize),
         into: &mut Into<'_>,
     ) -> Result<()> {
@@ -432,22 +434,23 @@ impl Predictor<'_> {
             into.values[2 * i] = special.omega;
             into.values[2 * i + 1] = damping.get(special.point).copied().unwrap_or(f64::NAN);
             if !into.slopes.is_empty() {
-                self.rows_of(model, (&branch, special.point), (Quantity::ModeOmega, 2 * i), &mut into)?;
+                self.rows_of(model, &branch, special.point, (Quantity::ModeOmega, 2 * i), &mut into)?;
                 self.rows_of(
                     model,
-                    (&branch, special.point),
+                    &branch,
+                    special.point,
                     (Quantity::ModeDamping, 2 * i + 1),
                     &mut into,
                 )?;
             }
-            note(&branch, special.point, (set, i), &mut into);
+            note(&branch, special.point, set, i, &mut into);
         }
         Ok(true)
     }
 }
 
 /// Notes the estimated error of a point, and the contacts that slip at it.
-fn note(branch: &Branch, point: usize, (set, i): (&FitData<'_>, usize), into: &mut Into<'_>) {
+fn note(branch: &Branch, point: usize, set: &FitData<'_>, i: usize, into: &mut Into<'_>) {
     if let Some(shares) = branch.slip_fraction_at(point) {
         for (slips, share) in into.slips.iter_mut().zip(shares) {
             *slips |= *share > FIT_SLIPS;

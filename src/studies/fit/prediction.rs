@@ -97,13 +97,14 @@ pub fn predict(
         let along = |i: usize| (0..p).map(|j| covariance[i * p + j] * row[j]).sum::<f64>();
         *sigma = (0..p).map(|i| row[i] * along(i)).sum::<f64>().max(0.0).sqrt();
     }
-    second_order(&predictor, (theta, covariance), &mut prediction)?;
+    second_order(&predictor, theta, covariance, &mut prediction)?;
     Ok(prediction)
 }
 
 fn second_order(
     predictor: &Predictor<'_>,
-    (theta, covariance): (&[f64], &[f64]),
+    theta: &[f64],
+    covariance: &[f64],
     prediction: &mut Prediction,
 ) -> Result<()> {
     let p = theta.len();

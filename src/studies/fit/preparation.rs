@@ -40,7 +40,8 @@ pub(super) fn check(
 /// caller's model is not changed. `scopes` are the data sets of the unknowns.
 pub(super) fn predictor<'a>(
     own: &'a Model,
-    (parameters, scopes): (&'a [Parameter<'a>], &'a [Option<usize>]),
+    parameters: &'a [Parameter<'a>],
+    scopes: &'a [Option<usize>],
     data: &'a [FitData<'a>],
     solver: &SolverOptions,
     interrupt: &'a Interrupt<'a>,

@@ -40,7 +40,7 @@ pub(super) fn searched(search: &FitSearch<'_>, hooks: &mut Hooks<'_>) -> Result<
     }
     let mut stopped = false;
     let explains = |search: &FitSearch<'_>, state: &State| !is_poor(search, state) && !unseen(state);
-    let mut told = |i: usize, state: &State| report(hooks, (i, state), &mut stopped);
+    let mut told = |i: usize, state: &State| report(hooks, i, state, &mut stopped);
     match thinned_data::start(search, &z, explains, &mut told)? {
         Start::Given => {}
         Start::Nearer(nearer) => z = nearer,
@@ -49,19 +49,19 @@ pub(super) fn searched(search: &FitSearch<'_>, hooks: &mut Hooks<'_>) -> Result<
     let Some(first) = search.at(z)? else {
         return Ok(Searched::NoSolution);
     };
-    let ended = best_of(search, &first, (hooks, stopped))?;
+    let ended = best_of(search, &first, hooks, stopped)?;
     Ok(Searched::Ended(Box::new(ended), first.theta))
 }
 
 /// The best end over the searches from all starts.
-fn best_of(search: &FitSearch<'_>, first: &State, (hooks, mut stopped): (&mut Hooks<'_>, bool)) -> Result<Ended> {
+fn best_of(search: &FitSearch<'_>, first: &State, hooks: &mut Hooks<'_>, mut stopped: bool) -> Result<Ended> {
     let mut starts = 1;
     let mut best = search.from(first.clone(), &mut |i, state| {
-        stopped || report(hooks, (i, state), &mut stopped)
+        stopped || report(hooks, i, state, &mut stopped)
     })?;
     if !stopped && is_poor(search, &best.state) && search.options.loss == Loss::Square {
         starts += 1;
-        let found = by_robust_loss(search, first, &mut |i, state| report(hooks, (i, state), &mut stopped))?;
+        let found = by_robust_loss(search, first, &mut |i, state| report(hooks, i, state, &mut stopped))?;
         if found.state.cost < best.state.cost {
             best = found;
         }
@@ -70,7 +70,7 @@ fn best_of(search: &FitSearch<'_>, first: &State, (hooks, mut stopped): (&mut Ho
     if !stopped && (poor || search.options.starts > 1) {
         for state in further_starts(search, first, poor)? {
             starts += 1;
-            let found = search.from(state, &mut |i, state| report(hooks, (i, state), &mut stopped))?;
+            let found = search.from(state, &mut |i, state| report(hooks, i, state, &mut stopped))?;
             // A state that fits not much better than one that does not see an unknown does not tell it.
             let gain = if unseen(&best.state) { FIT_TELLS } else { 0.0 };
             if found.state.cost < best.state.cost - gain {
@@ -114,7 +114,7 @@ fn by_robust_loss(
 }
 
 /// Reports an iteration as a point whose parameter is the loss.
-fn report(hooks: &mut Hooks<'_>, (iteration, state): (usize, &State), stopped: &mut bool) -> bool {
+fn report(hooks: &mut Hooks<'_>, iteration: usize, state: &State, stopped: &mut bool) -> bool {
     let progress = Progress {
         point: iteration + 1,
         parameter: state.cost,

@@ -156,7 +156,7 @@ impl<'a> SliderMemory<'a> {
         for places in &mut self.places {
             (places[1], places[2]) = (ends[0], ends[1]);
         }
-        self.pass((least, most), (chirp.omega(time), chirp.rate(time)));
+        self.pass(least, most, chirp.omega(time), chirp.rate(time));
         let here = path.at(time).norm();
         let mut place = Place::default();
         table.find(here, &mut place)?;
@@ -172,7 +172,7 @@ impl<'a> SliderMemory<'a> {
 
     /// Passes the three motions through all sliders. Leaves the fundamentals of the differences of their forces over
     /// the last turn.
-    fn pass(&mut self, (least, most): (f64, f64), (omega, rate): (f64, f64)) {
+    fn pass(&mut self, least: f64, most: f64, omega: f64, rate: f64) {
         let (table, n) = (self.table, SLIDER_MEMORY_SAMPLES);
         self.forces.fill(Complex64::ZERO);
         for (s, &(law, motion, count)) in self.sliders.iter().enumerate() {

@@ -115,7 +115,7 @@ impl SlowFlow<'_> {
                     let length = stop - time;
                     // The rate is that of the inside of the step.
                     let rate = chirp.rate(time + 0.5 * length);
-                    q = self.step((time, stop), rate, q, &mut known)?;
+                    q = self.step(time, stop, rate, q, &mut known)?;
                     slope = self.slope(stop, rate, q, &mut known)?;
                     if stop <= end {
                         for look in 1..=SLOW_FLOW_LOOKS {
@@ -133,7 +133,7 @@ impl SlowFlow<'_> {
     }
 
     /// One step of the classical Runge–Kutta method.
-    fn step(&self, (begin, end): (f64, f64), rate: f64, q: Complex64, known: &mut Known<'_>) -> Result<Complex64> {
+    fn step(&self, begin: f64, end: f64, rate: f64, q: Complex64, known: &mut Known<'_>) -> Result<Complex64> {
         let h = end - begin;
         let middle = begin + 0.5 * h;
         let a = self.slope(begin, rate, q, known)?;

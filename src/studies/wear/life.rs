@@ -199,7 +199,7 @@ impl LifeWalk<'_> {
             if let Some(event) = met {
                 let (distance, across) = (event - at.n, self.length_across(&at, rest)?);
                 if distance <= across {
-                    at = self.across(&at, (event, across), hooks)?;
+                    at = self.across(&at, event, across, hooks)?;
                     (last, met, broken, before) = (None, None, None, None);
                     delta = self.first_length(&at, end - at.n);
                     continue;
@@ -220,7 +220,7 @@ impl LifeWalk<'_> {
                 };
             }
             let length = length_of(delta, rest, met.is_some() || broken.is_some());
-            let step = match LifeStep::take(&mut self.states, (&at, length), last.as_ref(), tolerance, hooks) {
+            let step = match LifeStep::take(&mut self.states, &at, length, last.as_ref(), tolerance, hooks) {
                 Err(e) if matches!(e.status, Status::StoppedByCaller | Status::OutOfMemory) => return Err(e),
                 Ok(Taken::Step(step)) => step,
                 Ok(Taken::Refused(share)) => {
@@ -338,7 +338,7 @@ impl LifeWalk<'_> {
 
     /// Records a jump where two neighbouring states do not belong to one motion.
     fn tell_jump(&mut self, at: &LifeState, to: &LifeState) -> Result<()> {
-        if at.goes_on_to(to, (&self.states, self.options.tolerance))? {
+        if at.goes_on_to(to, &self.states, self.options.tolerance)? {
             return Ok(());
         }
         // Next to a fold the motion may jump to the unstable one, which ends there, too: that is one jump.
@@ -385,7 +385,7 @@ impl LifeWalk<'_> {
             let probe = if tries == 0 {
                 step.to.clone()
             } else {
-                let depths = ahead((at, last), n - at.n)?;
+                let depths = ahead(at, last, n - at.n)?;
                 LifeState {
                     n,
                     worn: self.states.at(&depths, Some(at.near()), hooks)?,
@@ -438,7 +438,7 @@ impl LifeWalk<'_> {
     }
 
     /// The state a short distance after an event, whose changes are recorded.
-    fn across(&mut self, at: &LifeState, (event, beyond): (f64, f64), hooks: &mut Hooks<'_>) -> Result<LifeState> {
+    fn across(&mut self, at: &LifeState, event: f64, beyond: f64, hooks: &mut Hooks<'_>) -> Result<LifeState> {
         let end = self.options.cycles.last().copied().unwrap_or(at.n);
         let mut length = ((event - at.n).max(0.0) + beyond).min(end - at.n);
         for _ in 0..LIFE_HALVINGS {

@@ -93,7 +93,7 @@ pub fn best_load_for_life(
             }
         }
     }
-    let smooth = search.smooth((a.factor, b.factor), found, hooks)?;
+    let smooth = search.smooth(a.factor, b.factor, found, hooks)?;
     if smooth.largest < found.largest {
         found = smooth;
     }
@@ -183,7 +183,7 @@ impl LoadSearch<'_> {
     }
 
     /// Minimum of the largest amplitude by golden sections, as long as they may find less than a known one.
-    fn smooth(&mut self, (low, high): (f64, f64), known: Tried, hooks: &mut Hooks<'_>) -> Result<Tried> {
+    fn smooth(&mut self, low: f64, high: f64, known: Tried, hooks: &mut Hooks<'_>) -> Result<Tried> {
         let mut found = known;
         // Inside of the bracket the known one may be the corner itself: both neighbours at a small distance decide.
         for side in [-1.0, 1.0] {

@@ -82,7 +82,7 @@ impl LifeState {
 
     /// Whether another state continues the motion of this one: its amplitude and works follow from the derivatives at
     /// both states.
-    pub fn goes_on_to(&self, other: &Self, (states, tolerance): (&WornStates<'_>, f64)) -> Result<bool> {
+    pub fn goes_on_to(&self, other: &Self, states: &WornStates<'_>, tolerance: f64) -> Result<bool> {
         let mut change = try_copy(&other.depths, CONTEXT)?;
         for (x, before) in change.iter_mut().zip(&self.depths) {
             *x -= before;
@@ -151,14 +151,15 @@ impl LifeStep {
     /// Those of the states.
     pub fn take(
         states: &mut WornStates<'_>,
-        (from, delta): (&LifeState, f64),
+        from: &LifeState,
+        delta: f64,
         last: Option<&Self>,
         tolerance: f64,
         hooks: &mut Hooks<'_>,
     ) -> Result<Taken> {
         let count = from.depths.len();
         let start = from.second()?;
-        let mut depths = ahead((from, last), delta)?;
+        let mut depths = ahead(from, last, delta)?;
         let mut system = Lu::new(count, 1)?;
         let mut before: Option<LifeState> = None;
         for _ in 0..LIFE_STEP_ITERATIONS {
@@ -173,14 +174,14 @@ impl LifeStep {
             let second = to.second()?;
             let changes = from.worn.changes(&to.worn);
             if !changes {
-                let fourth = fourth((from, &to), [&start, &second])?;
+                let fourth = fourth(from, &to, [&start, &second])?;
                 let bends = (&fourth[..], third((from, &to)));
-                let (error, _) = error_of(states, &to, (bends, delta), last)?;
+                let (error, _) = error_of(states, &to, bends, delta, last)?;
                 let share = error / tolerance;
                 if last.is_some() && share > LIFE_STEP_HOPELESS {
                     return Ok(Taken::Refused(share));
                 }
-                if !from.goes_on_to(&to, (states, tolerance))? {
+                if !from.goes_on_to(&to, states, tolerance)? {
                     return Ok(if share > 1.0 {
                         Taken::Refused(share.max(LIFE_STEP_BROKEN))
                     } else {
@@ -209,7 +210,7 @@ impl LifeStep {
                 return Ok(Taken::Failed);
             }
             system.solve(&mut gap);
-            if let Some(to) = corrected(states, (from, &to), &gap, (delta, tolerance))? {
+            if let Some(to) = corrected(states, from, &to, &gap, delta, tolerance)? {
                 let second = to.second()?;
                 return Self::whole(from, to, [start, second]).map(Taken::Step);
             }
@@ -223,7 +224,7 @@ impl LifeStep {
 
     /// The step between two states that solve its equations, from the derivatives of their rates.
     fn whole(from: &LifeState, to: LifeState, second: [Vec<f64>; 2]) -> Result<Self> {
-        let fourth = fourth((from, &to), [&second[0], &second[1]])?;
+        let fourth = fourth(from, &to, [&second[0], &second[1]])?;
         Ok(Self {
             third: third((from, &to)),
             from: from.clone(),
@@ -240,7 +241,7 @@ impl LifeStep {
 
     /// The estimated error of the step, and the power of the length with which it grows.
     pub fn error(&self, states: &WornStates<'_>, last: Option<&Self>) -> Result<(f64, i32)> {
-        error_of(states, &self.to, ((&self.fourth, self.third), self.length()), last)
+        error_of(states, &self.to, (&self.fourth, self.third), self.length(), last)
     }
 
     /// Depths at n cycles, as integrals of the cubic of the rates.
@@ -313,7 +314,7 @@ impl LifeStep {
 }
 
 /// Fourth derivative h⁗ of the depths between two states, from f′ at both by the cubic of the rates.
-fn fourth((from, to): (&LifeState, &LifeState), second: [&[f64]; 2]) -> Result<Vec<f64>> {
+fn fourth(from: &LifeState, to: &LifeState, second: [&[f64]; 2]) -> Result<Vec<f64>> {
     let delta = to.n - from.n;
     let mut fourth = try_vec(from.depths.len(), 0.0, CONTEXT)?;
     let (f0, f1) = (&from.worn.rate, &to.worn.rate);
@@ -327,7 +328,8 @@ fn fourth((from, to): (&LifeState, &LifeState), second: [&[f64]; 2]) -> Result<V
 fn error_of(
     states: &WornStates<'_>,
     to: &LifeState,
-    ((fourth, third), delta): ((&[f64], f64), f64),
+    (fourth, third): (&[f64], f64),
+    delta: f64,
     last: Option<&LifeStep>,
 ) -> Result<(f64, i32)> {
     let mut error = try_copy(fourth, CONTEXT)?;
@@ -365,9 +367,11 @@ fn third((from, to): (&LifeState, &LifeState)) -> f64 {
 /// order in t; across it the change is unknown, and alters the equations of the step by Δ/12 (J₁ − J₀) δ⊥ or so, by f′ = J f.
 fn corrected(
     states: &WornStates<'_>,
-    (from, to): (&LifeState, &LifeState),
+    from: &LifeState,
+    to: &LifeState,
     correction: &[f64],
-    (delta, tolerance): (f64, f64),
+    delta: f64,
+    tolerance: f64,
 ) -> Result<Option<LifeState>> {
     let count = correction.len();
     if from.worn.changes(&to.worn) {
@@ -439,7 +443,7 @@ fn corrected(
 
 /// Depths at a distance `delta` from the end of the last step, provided that no contact changes its state: the Taylor
 /// series of f′ = J f, where J continues along the line through its values at both ends of that step.
-pub(crate) fn ahead((at, last): (&LifeState, Option<&LifeStep>), delta: f64) -> Result<Vec<f64>> {
+pub(crate) fn ahead(at: &LifeState, last: Option<&LifeStep>, delta: f64) -> Result<Vec<f64>> {
     let jacobian = &at.worn.rate_by_depth;
     let mut slope = try_vec(jacobian.len(), 0.0, CONTEXT)?;
     if let Some(step) = last {

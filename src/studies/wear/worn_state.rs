@@ -10,7 +10,7 @@ use crate::model::Model;
 use crate::model::matrices::speed::Speed;
 use crate::options::{Duty, ForcedOptions, LifeFollow, LifeOptions, SolverOptions};
 use crate::results::{Branch, Special};
-use crate::sensitivity::{Adjoint, ForcedPoint, Parameter, TotalDerivative, work_at_fixed_motion};
+use crate::sensitivity::{Adjoint, ForcedPoint, Parameter, SampledModel, TotalDerivative, work_at_fixed_motion};
 use num_complex::Complex64;
 use std::rc::Rc;
 
@@ -256,7 +256,7 @@ impl<'a> WornStates<'a> {
                     let shift: f64 = by_depth.map(|(by, (to, from))| by * (to - from)).sum();
                     state.omega + if shift.abs() < 0.1 * state.omega { shift } else { 0.0 }
                 });
-                let found = self.peak((&model, &state), ((omega_start, omega_stop), near), hooks)?;
+                let found = self.peak(&model, &state, (omega_start, omega_stop), near, hooks)?;
                 self.add(&mut state, &found, 1.0);
             }
             LifeFollow::Duties(duties) => {
@@ -264,7 +264,7 @@ impl<'a> WornStates<'a> {
                 let mut motions = Vec::new();
                 for (d, duty) in duties.iter().enumerate() {
                     let guess = near.and_then(|(state, _)| state.motions.get(d));
-                    let (found, motion) = self.duty((&model, &state), (duty, guess), hooks)?;
+                    let (found, motion) = self.duty(&model, &state, duty, guess, hooks)?;
                     try_push(&mut motions, motion, CONTEXT)?;
                     self.add(&mut state, &found, duty.share * duty.omega / total);
                 }
@@ -329,8 +329,10 @@ impl<'a> WornStates<'a> {
     /// The vibration of a duty; and its harmonics as a guess for the next one.
     fn duty(
         &mut self,
-        (model, state): (&Model, &WornState),
-        (duty, guess): (&Duty, Option<&Vec<Complex64>>),
+        model: &Model,
+        state: &WornState,
+        duty: &Duty,
+        guess: Option<&Vec<Complex64>>,
         hooks: &mut Hooks<'_>,
     ) -> Result<(Vibration, Vec<Complex64>)> {
         let scaled;
@@ -369,15 +371,17 @@ impl<'a> WornStates<'a> {
             Vec::new()
         };
         let at = (&branch, 0, branch.stored_amplitude(0));
-        let found = self.vibration((model, state), at, None, &hooks.interrupt())?;
+        let found = self.vibration(model, state, at, None, &hooks.interrupt())?;
         Ok((found, motion))
     }
 
     /// The vibration in the peak next to a frequency, or in the highest one of a range.
     fn peak(
         &mut self,
-        (model, state): (&Model, &WornState),
-        ((start, stop), near): ((f64, f64), Option<f64>),
+        model: &Model,
+        state: &WornState,
+        (start, stop): (f64, f64),
+        near: Option<f64>,
         hooks: &mut Hooks<'_>,
     ) -> Result<Vibration> {
         let mut ranges = [(start, stop); 4];
@@ -421,7 +425,7 @@ impl<'a> WornStates<'a> {
                 };
             }
             let at = (&branch, peak.point, peak.amplitude);
-            return self.vibration((model, state), at, Some(&by_load), &stop);
+            return self.vibration(model, state, at, Some(&by_load), &stop);
         }
         match near {
             Some(omega) => fail!(StoppedNoPeak, "the response has no peak near omega = {omega}"),
@@ -454,7 +458,8 @@ impl<'a> WornStates<'a> {
     /// Works and derivatives at a point of a branch; `peak` is the derivative of its frequency by the loads.
     fn vibration(
         &self,
-        (model, state): (&Model, &WornState),
+        model: &Model,
+        state: &WornState,
         (branch, point, amplitude): (&Branch, usize, f64),
         peak: Option<&[f64]>,
         interrupt: &Interrupt<'_>,
@@ -485,9 +490,9 @@ impl<'a> WornStates<'a> {
         };
         let at_frequency = model.at_frequency(omega)?;
         let parameters = self.parameters(model)?;
-        let models = (model, &*at_frequency);
+        let solution = SampledModel { condensed, samples };
         let gradient = |adjoint: &Adjoint, values: &mut [f64]| -> Result<()> {
-            let mut total = TotalDerivative::new(models, (condensed, samples), adjoint, interrupt)?;
+            let mut total = TotalDerivative::new(model, &at_frequency, solution, adjoint, interrupt)?;
             for (k, (value, parameter)) in values.iter_mut().zip(&parameters).enumerate() {
                 let (by, _) = total.by(parameter)?;
                 *value = if by.is_finite() {
@@ -498,7 +503,7 @@ impl<'a> WornStates<'a> {
             }
             Ok(())
         };
-        let mut at = ForcedPoint::new(condensed, (branch.response_dof(), samples), omega, interrupt)?;
+        let mut at = ForcedPoint::new(condensed, branch.response_dof(), samples, omega, interrupt)?;
         let Some(adjoint) = at.adjoint(u, omega)? else {
             return fail!(Singular, "the vibration is at a fold, where wear would make it jump");
         };
@@ -512,12 +517,12 @@ impl<'a> WornStates<'a> {
             let Some(law) = law.filter(|_| found.slips[j]) else {
                 continue;
             };
-            let (work, adjoint) = at.work((u, omega), (law, samples))?;
+            let (work, adjoint) = at.work(u, omega, law, samples)?;
             found.works[j] = work.max(0.0);
             gradient(&adjoint, &mut by_load)?;
-            let own = (&*at_frequency, wear.contact, constant(model, wear.contact));
-            by_load[j] +=
-                self.per_load(model, j) * work_at_fixed_motion(own, (condensed, samples), &adjoint, interrupt)?;
+            let own = constant(model, wear.contact);
+            let of_load = work_at_fixed_motion(&at_frequency, wear.contact, own, solution, &adjoint, interrupt)?;
+            by_load[j] += self.per_load(model, j) * of_load;
             for (k, by) in by_load.iter().enumerate() {
                 let moves = peak.map_or(0.0, |shift| shift[k] * adjoint.by_omega);
                 found.work_by_load[k * n + j] = by + moves;

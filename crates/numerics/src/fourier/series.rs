@@ -51,7 +51,7 @@ fn at_turn(set: &HarmonicSet, packed: &[f64], mut turn: Complex64) -> Jet {
     let mut p = 1.0;
     let mut pairs = rest.as_chunks::<2>().0;
     if pairs.len() >= GROUPED_FROM {
-        let sums = in_groups(pairs, (turn, step), stride as f64);
+        let sums = in_groups(pairs, turn, step, stride as f64);
         (low, high, pairs, turn, p) = (sums.low, sums.high, sums.rest, sums.turn, sums.number);
     }
     for [a, b] in pairs {
@@ -95,7 +95,7 @@ struct Sums<'a> {
 
 /// The sums over whole groups from the first harmonic on.
 #[inline(never)]
-fn in_groups(pairs: &[[f64; 2]], (mut turn, step): (Complex64, Complex64), stride: f64) -> Sums<'_> {
+fn in_groups(pairs: &[[f64; 2]], mut turn: Complex64, step: Complex64, stride: f64) -> Sums<'_> {
     let (groups, rest) = pairs.as_chunks::<SERIES_GROUP>();
     // Powers of the first group, and the factor to the next.
     let (mut re, mut im, mut p) = ([0.0; SERIES_GROUP], [0.0; SERIES_GROUP], [0.0; SERIES_GROUP]);

@@ -193,7 +193,7 @@ impl TurningPoints {
             };
             if left.positive != right.positive || left.value.abs().min(right.value.abs()) <= hidden {
                 interrupt.check_before((VALUES_OF_A_CROSSING * packed.len()) as u64)?;
-                isolate((set, packed), [left, right], &bounds, found, interrupt)?;
+                isolate(set, packed, [left, right], &bounds, found, interrupt)?;
             }
             left = right;
         }
@@ -383,7 +383,8 @@ struct Slope {
 
 /// Stores every root of x′ between two times.
 fn isolate(
-    (set, packed): (&HarmonicSet, &[f64]),
+    set: &HarmonicSet,
+    packed: &[f64],
     [a, b]: [Slope; 2],
     bounds: &Bounds,
     found: &mut Vec<Extremum>,
@@ -397,7 +398,7 @@ fn isolate(
     if is_certain || bounds.is_finest(width) {
         if crosses {
             let guess = a.tau + width * cell.root();
-            push_root((set, packed), [a, b], guess, found);
+            push_root(set, packed, [a, b], guess, found);
         }
         return Ok(());
     }
@@ -417,12 +418,12 @@ fn isolate(
         turning,
         positive,
     };
-    isolate((set, packed), [a, middle], bounds, found, interrupt)?;
-    isolate((set, packed), [middle, b], bounds, found, interrupt)
+    isolate(set, packed, [a, middle], bounds, found, interrupt)?;
+    isolate(set, packed, [middle, b], bounds, found, interrupt)
 }
 
 /// Refines the root of x′ between two times of opposite sign from a guess, and stores it.
-fn push_root((set, packed): (&HarmonicSet, &[f64]), [a, b]: [Slope; 2], guess: f64, found: &mut Vec<Extremum>) {
+fn push_root(set: &HarmonicSet, packed: &[f64], [a, b]: [Slope; 2], guess: f64, found: &mut Vec<Extremum>) {
     // Values of equal sign mean that one of them is rounding.
     if a.value * b.value >= 0.0 {
         let tau = if a.value.abs() < b.value.abs() { a.tau } else { b.tau };

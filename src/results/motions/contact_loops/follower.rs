@@ -53,9 +53,11 @@ impl<'a> Follower<'a> {
     /// # Errors
     /// `OutOfMemory`; those of callbacks; `NoConvergence` for a law whose states do not become periodic; `StoppedByCaller`.
     pub(super) fn of_law(
-        (motion, actual): (PeriodicMotion<'a>, Option<&'a [f64]>),
+        motion: PeriodicMotion<'a>,
+        actual: Option<&'a [f64]>,
         n: usize,
-        (law, samples): (&'a dyn Law, usize),
+        law: &'a dyn Law,
+        samples: usize,
         interrupt: &Interrupt<'_>,
     ) -> Result<Self> {
         let PeriodicMotion { set, packed, .. } = motion;

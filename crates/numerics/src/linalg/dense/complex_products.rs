@@ -74,15 +74,15 @@ fn all_rows<const COLUMNS: usize>(mut c: [&mut [Complex64]; COLUMNS], a: &[Compl
     let rows = c[0].len();
     let mut first = 0;
     while first + ROWS_AT_ONCE <= rows {
-        some_rows::<COLUMNS, { 2 * ROWS_AT_ONCE }>(&mut c, (a, first), &b);
+        some_rows::<COLUMNS, { 2 * ROWS_AT_ONCE }>(&mut c, a, first, &b);
         first += ROWS_AT_ONCE;
     }
     while first + 2 <= rows {
-        some_rows::<COLUMNS, 4>(&mut c, (a, first), &b);
+        some_rows::<COLUMNS, 4>(&mut c, a, first, &b);
         first += 2;
     }
     if first < rows {
-        some_rows::<COLUMNS, 2>(&mut c, (a, first), &b);
+        some_rows::<COLUMNS, 2>(&mut c, a, first, &b);
     }
 }
 
@@ -90,7 +90,8 @@ fn all_rows<const COLUMNS: usize>(mut c: [&mut [Complex64]; COLUMNS], a: &[Compl
 #[inline(always)]
 fn some_rows<const COLUMNS: usize, const NUMBERS: usize>(
     c: &mut [&mut [Complex64]; COLUMNS],
-    (a, first): (&[Complex64], usize),
+    a: &[Complex64],
+    first: usize,
     b: &[&[Complex64]; COLUMNS],
 ) {
     let rows = c[0].len();

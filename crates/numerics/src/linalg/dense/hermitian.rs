@@ -36,14 +36,15 @@ pub fn eigen(a: &mut [Complex64], n: usize, interrupt: &Interrupt<'_>) -> Result
     let mut values = try_vec(n, 0.0, CONTEXT)?;
     let mut beside = try_vec(n, 0.0, CONTEXT)?;
     let mut factors = try_vec(n, Complex64::ZERO, CONTEXT)?;
-    tridiagonalise(a, n, (&mut values, &mut beside), &mut factors, interrupt)?;
+    tridiagonalise(a, n, &mut values, &mut beside, &mut factors, interrupt)?;
     let mut z = try_vec(n * n, 0.0, CONTEXT)?;
     for i in 0..n {
         z[i * n + i] = 1.0;
     }
     let between = |low: f64, high: f64| move |share: f64| interrupt.phase(Phase::Modes, low + (high - low) * share);
     tridiagonal::diagonalise(
-        (&mut values, &mut beside),
+        &mut values,
+        &mut beside,
         &mut z,
         interrupt,
         between(HERMITIAN_REDUCED, ITERATED),
@@ -70,7 +71,8 @@ pub fn eigen(a: &mut [Complex64], n: usize, interrupt: &Interrupt<'_>) -> Result
 fn tridiagonalise(
     a: &mut [Complex64],
     n: usize,
-    (diagonal, beside): (&mut [f64], &mut [f64]),
+    diagonal: &mut [f64],
+    beside: &mut [f64],
     factors: &mut [Complex64],
     interrupt: &Interrupt<'_>,
 ) -> Result<()> {
@@ -184,35 +186,35 @@ pub fn solve_triangular(
     let triangle = if adjoint { &by_columns } else { l };
     for b in b.chunks_mut(HERMITIAN_AT_ONCE * n.max(1)) {
         interrupt.check_before((4 * n * b.len()) as u64)?;
-        solve_rows((triangle, n), adjoint, 0..n, b);
+        solve_rows(triangle, n, adjoint, 0..n, b);
     }
     Ok(())
 }
 
 /// Solves for some rows of B: one half of them, then the other half after the product with the triangle between;
 /// lower triangles begin with the first half, upper ones with the last.
-fn solve_rows((a, n): (&[Complex64], usize), upper: bool, rows: Range<usize>, b: &mut [Complex64]) {
+fn solve_rows(a: &[Complex64], n: usize, upper: bool, rows: Range<usize>, b: &mut [Complex64]) {
     if rows.len() <= HERMITIAN_BLOCK {
         for x in b.chunks_exact_mut(n) {
-            solve_column((a, n), upper, rows.clone(), x);
+            solve_column(a, n, upper, rows.clone(), x);
         }
         return;
     }
     let middle = rows.start + rows.len() / 2;
     let (head, rest) = (rows.start..middle, middle..rows.end);
     let (first, last) = if upper { (rest, head) } else { (head, rest) };
-    solve_rows((a, n), upper, first.clone(), b);
+    solve_rows(a, n, upper, first.clone(), b);
     let between = MatRef::from_column_major_slice(a, n, n).submatrix(last.start, first.start, last.len(), first.len());
     let columns = b.len() / n;
     let b_rows = MatMut::from_column_major_slice_mut(b, n, columns).subrows_mut(rows.start, rows.len());
     let (above, below) = b_rows.split_at_row_mut(middle - rows.start);
     let (known, to) = if upper { (below, above) } else { (above, below) };
     matmul(to, Accum::Add, between, known.rb(), -Complex64::ONE, Par::Seq);
-    solve_rows((a, n), upper, last, b);
+    solve_rows(a, n, upper, last, b);
 }
 
 /// Solves for some rows of one column, entry after entry.
-fn solve_column((a, n): (&[Complex64], usize), upper: bool, rows: Range<usize>, x: &mut [Complex64]) {
+fn solve_column(a: &[Complex64], n: usize, upper: bool, rows: Range<usize>, x: &mut [Complex64]) {
     for i in 0..rows.len() {
         let k = if upper { rows.end - 1 - i } else { rows.start + i };
         let others = if upper { rows.start..k } else { k + 1..rows.end };

@@ -88,7 +88,7 @@ impl LeastSquares {
             // The reflection I − v vᵀ/s with v = column − pivot e₁ and s = −pivot·v₁.
             let first = head - pivot;
             for y in rest.chunks_exact_mut(n) {
-                reflect(column, (first, pivot), &mut y[k..]);
+                reflect(column, first, pivot, &mut y[k..]);
             }
             column[0] = pivot;
             self.heads[k] = first;
@@ -120,7 +120,7 @@ impl LeastSquares {
         let (n, rank) = (self.n, self.rank);
         let (r, open) = self.a.split_at(rank * n);
         for (k, column) in r.chunks_exact(n).enumerate() {
-            reflect(&column[k..], (self.heads[k], column[k]), &mut b[k..]);
+            reflect(&column[k..], self.heads[k], column[k], &mut b[k..]);
         }
         back(r, n, rank, b);
         b[rank..].fill(0.0);
@@ -136,7 +136,7 @@ impl LeastSquares {
 }
 
 /// Applies a reflection: y ← y − v (vᵀy)/s with s = −pivot·v₁, where v is a column with another first entry.
-fn reflect(column: &[f64], (first, pivot): (f64, f64), y: &mut [f64]) {
+fn reflect(column: &[f64], first: f64, pivot: f64, y: &mut [f64]) {
     let (v, (head, rest)) = (&column[1..], y.split_at_mut(1));
     let along: f64 = first * head[0] + v.iter().zip(rest.iter()).map(|(v, y)| v * y).sum::<f64>();
     let share = along / (-pivot * first);

@@ -84,7 +84,7 @@ pub fn with_definite_mass(
         by_default,
     );
     interrupt.check_before(2 * operations)?;
-    if found.is_err() || residual(&a, (&values, &x), n)? > WRONG * n as f64 {
+    if found.is_err() || residual(&a, &values, &x, n)? > WRONG * n as f64 {
         return Ok(None);
     }
     interrupt.check_before(operations)?;
@@ -98,7 +98,7 @@ pub fn with_definite_mass(
 
 /// Error of eigenpairs: largest entry of A X − X Λ over that of A; infinite where a value is not above the one
 /// before.
-fn residual(a: &[f64], (values, x): (&[f64], &[f64]), n: usize) -> Result<f64> {
+fn residual(a: &[f64], values: &[f64], x: &[f64], n: usize) -> Result<f64> {
     let mut product = try_vec(n * n, 0.0, CONTEXT)?;
     matmul(
         square_mut(&mut product, n),

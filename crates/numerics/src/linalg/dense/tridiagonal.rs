@@ -25,7 +25,8 @@ const ROWS: usize = 128;
 /// # Errors
 /// `NoConvergence`, `OutOfMemory`; `StoppedByCaller`.
 pub fn diagonalise(
-    (d, e): (&mut [f64], &mut [f64]),
+    d: &mut [f64],
+    e: &mut [f64],
     z: &mut [f64],
     interrupt: &Interrupt<'_>,
     progress: impl Fn(f64) -> Result<()>,
@@ -45,7 +46,7 @@ pub fn diagonalise(
             if iteration == MOST_ITERATIONS || !e[l].is_finite() {
                 return fail!(NoConvergence, "the eigenvalues of a matrix of order {n} were not found");
             }
-            let from = iterate((d, e), (l, m), &mut rotations);
+            let from = iterate(d, e, l, m, &mut rotations);
             Arch::new().dispatch(Rotate {
                 rotations: &rotations,
                 range: (from, m),
@@ -59,7 +60,7 @@ pub fn diagonalise(
 
 /// One QL iteration on rows l to m. `rotations` receives (c, s) of the rotations of columns i and i + 1, for i from
 /// the last one down to the returned index.
-fn iterate((d, e): (&mut [f64], &mut [f64]), (l, m): (usize, usize), rotations: &mut [(f64, f64)]) -> usize {
+fn iterate(d: &mut [f64], e: &mut [f64], l: usize, m: usize, rotations: &mut [(f64, f64)]) -> usize {
     let g = (d[l + 1] - d[l]) / (2.0 * e[l]);
     let r = g.hypot(1.0);
     let mut g = d[m] - d[l] + e[l] / (g + r.copysign(g));
@@ -132,7 +133,7 @@ mod tests {
             for i in 0..n {
                 z[i * n + i] = 1.0;
             }
-            diagonalise((&mut d, &mut e), &mut z, &Interrupt::none(), |_| Ok(())).unwrap();
+            diagonalise(&mut d, &mut e, &mut z, &Interrupt::none(), |_| Ok(())).unwrap();
             let mut order: Vec<usize> = (0..n).collect();
             order.sort_by(|&i, &j| d[i].total_cmp(&d[j]));
             for (k, &at) in order.iter().enumerate() {
@@ -155,7 +156,7 @@ mod tests {
         for i in 0..4 {
             z[i * 4 + i] = 1.0;
         }
-        diagonalise((&mut d, &mut e), &mut z, &Interrupt::none(), |_| Ok(())).unwrap();
+        diagonalise(&mut d, &mut e, &mut z, &Interrupt::none(), |_| Ok(())).unwrap();
         d.sort_by(f64::total_cmp);
         for (value, exact) in d.iter().zip([0.5, 1.5, 3.0, 7.0]) {
             assert!((value - exact).abs() < 1e-14);

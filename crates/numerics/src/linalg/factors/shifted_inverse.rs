@@ -39,7 +39,7 @@ pub(crate) enum Place {
 /// Finds a shift below all eigenvalues, starting from `shift`, so that the lowest eigenvalues belong to the largest
 /// ones of the operator also where K is negative in some direction.
 pub(crate) fn below_all(k: &Csc, m: &Csc, shift: f64, interrupt: &Interrupt<'_>) -> Result<BelowAll> {
-    let factors = |sigma: f64| definite_inverse(k, (sigma, m), interrupt);
+    let factors = |sigma: f64| definite_inverse(k, sigma, m, interrupt);
     if let Some(inverse) = factors(shift)? {
         let place = Place::First;
         return Ok(BelowAll { inverse, shift, place });
@@ -71,7 +71,7 @@ pub(crate) fn below_all(k: &Csc, m: &Csc, shift: f64, interrupt: &Interrupt<'_>)
 }
 
 /// The inverse of K + σM; `None` where this matrix is not positive definite.
-pub(crate) fn definite_inverse(k: &Csc, (shift, m): (f64, &Csc), interrupt: &Interrupt<'_>) -> Result<Option<Inverse>> {
+pub(crate) fn definite_inverse(k: &Csc, shift: f64, m: &Csc, interrupt: &Interrupt<'_>) -> Result<Option<Inverse>> {
     let n = k.rows;
     if n > SHIFTED_INVERSE_DENSE_UP_TO {
         return Ok(Definite::new(k, (shift, m), interrupt)?.map(Inverse::Definite));

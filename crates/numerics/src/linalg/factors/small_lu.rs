@@ -76,7 +76,7 @@ impl SmallLu {
 
     /// Fills in the bordered matrix [A·a, c·b; row], of the order set last, from the columns of A and c, one after
     /// the other.
-    pub fn fill_bordered(&mut self, matrix: &[f64], (a, b): (f64, f64), column: &[f64], row: &[f64]) {
+    pub fn fill_bordered(&mut self, matrix: &[f64], a: f64, b: f64, column: &[f64], row: &[f64]) {
         let upper = &mut self.upper[..self.n];
         self.arch.dispatch(Fill(upper, matrix, (a, b), column, row));
     }

@@ -318,7 +318,7 @@ impl<T: Entry> BlockKrylov<T> {
             }
         }
         self.weigh(&block, &mut weighted, interrupt)?;
-        remove_part(&mut self.rest, (&block, &weighted), n, interrupt)?;
+        remove_part(&mut self.rest, &block, &weighted, n, interrupt)?;
         self.append(&block)?;
         drop((block, weighted));
         self.images(first, interrupt)?;
@@ -340,7 +340,7 @@ impl<T: Entry> BlockKrylov<T> {
         let first = self.order();
         let mut weighted = try_vec(block.len(), T::NONE, CONTEXT)?;
         self.weigh(&block, &mut weighted, interrupt)?;
-        let kept = orthonormalise((&mut block, &mut weighted), n, sizes, interrupt)?;
+        let kept = orthonormalise(&mut block, &mut weighted, n, sizes, interrupt)?;
         block.truncate(kept * n);
         weighted.truncate(kept * n);
         // The rest of a small part has lost the digits by which it was small.
@@ -351,7 +351,7 @@ impl<T: Entry> BlockKrylov<T> {
         }
         if !orthonormalise_again(&mut block, &weighted, n, interrupt)? {
             let sizes = try_vec(kept, 1.0, CONTEXT)?;
-            let kept = orthonormalise((&mut block, &mut weighted), n, &sizes, interrupt)?;
+            let kept = orthonormalise(&mut block, &mut weighted, n, &sizes, interrupt)?;
             block.truncate(kept * n);
         }
         self.append(&block)?;
@@ -461,12 +461,7 @@ impl<T: Entry> BlockKrylov<T> {
 }
 
 /// x ← x − U Uᴴ A x for orthonormal columns U; A U is given.
-fn remove_part<T: Entry>(
-    x: &mut [T],
-    (unit, weighted): (&[T], &[T]),
-    n: usize,
-    interrupt: &Interrupt<'_>,
-) -> Result<()> {
+fn remove_part<T: Entry>(x: &mut [T], unit: &[T], weighted: &[T], n: usize, interrupt: &Interrupt<'_>) -> Result<()> {
     let (own, columns) = (unit.len() / n.max(1), x.len() / n.max(1));
     let mut parts = try_vec(own * columns, T::NONE, CONTEXT)?;
     interrupt.check_before((8 * own * x.len()) as u64)?;

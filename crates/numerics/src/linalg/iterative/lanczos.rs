@@ -80,7 +80,7 @@ pub fn lowest(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Resu
         if search.open.is_none() || moves == MOVES {
             break;
         }
-        let Some(nearer) = search.nearer((k, m), shift, interrupt)? else {
+        let Some(nearer) = search.nearer(k, m, shift, interrupt)? else {
             break;
         };
         (search.inverse, shift) = nearer;
@@ -245,7 +245,7 @@ impl Run {
         for row in 0..rows {
             last[(size - rows + row) * rows + row] = 1.0;
         }
-        tridiagonal::diagonalise((&mut values, &mut beside), &mut last, interrupt, |_| Ok(()))?;
+        tridiagonal::diagonalise(&mut values, &mut beside, &mut last, interrupt, |_| Ok(()))?;
         Ok((values, last))
     }
 }
@@ -270,7 +270,7 @@ impl LanczosSearch<'_> {
     }
 
     /// A shift closer below the lowest eigenvalues, with the inverse at it; `None` if there is none.
-    fn nearer(&self, (k, m): (&Csc, &Csc), shift: f64, interrupt: &Interrupt<'_>) -> Result<Option<(Inverse, f64)>> {
+    fn nearer(&self, k: &Csc, m: &Csc, shift: f64, interrupt: &Interrupt<'_>) -> Result<Option<(Inverse, f64)>> {
         let Some(open) = self.open.filter(|_| self.place != Place::Within) else {
             return Ok(None);
         };
@@ -284,7 +284,7 @@ impl LanczosSearch<'_> {
         let mut below = (highest - lowest + open.bound / open.first.powi(2)).min(0.5 * lowest);
         while below < 0.9 * lowest {
             let sigma = shift - (lowest - below);
-            if let Some(inverse) = definite_inverse(k, (sigma, m), interrupt)? {
+            if let Some(inverse) = definite_inverse(k, sigma, m, interrupt)? {
                 return Ok(Some((inverse, sigma)));
             }
             below *= BACK;

@@ -227,7 +227,7 @@ impl<'a> NearShift<'a> {
                 let ritz = run.ritz(self.interrupt)?;
                 let is_settled = is_closed || are_settled(&ritz, level, wanted);
                 if is_settled || step == steps {
-                    return self.keep(&run, &ritz, (level, wanted), is_settled);
+                    return self.keep(&run, &ritz, level, wanted, is_settled);
                 }
                 next_look = (step + 10 + step / 5).min(steps);
             }
@@ -237,7 +237,7 @@ impl<'a> NearShift<'a> {
     }
 
     /// Keeps those vectors of a run that have converged and are requested.
-    fn keep(&mut self, run: &Run, ritz: &Ritz, (level, wanted): (f64, usize), is_settled: bool) -> Result<End> {
+    fn keep(&mut self, run: &Run, ritz: &Ritz, level: f64, wanted: usize, is_settled: bool) -> Result<End> {
         let mut end = End {
             largest: 0.0,
             is_settled,

@@ -118,7 +118,8 @@ const DOWNDATED: f64 = 1e-4;
 /// # Errors
 /// Out of memory, or a requested stop.
 pub fn orthonormalise<T: Entry>(
-    (block, weighted): (&mut [T], &mut [T]),
+    block: &mut [T],
+    weighted: &mut [T],
     n: usize,
     sizes: &[f64],
     interrupt: &Interrupt<'_>,

@@ -48,7 +48,7 @@ pub fn within(
             return Ok(None);
         }
         if count > PER_SLICE
-            && let Some(pairs) = in_slices((k, m), ((low, first), (high, end)), &below, interrupt)?
+            && let Some(pairs) = in_slices(k, m, (low, first), (high, end), &below, interrupt)?
         {
             return Ok(Some(pairs));
         }
@@ -59,8 +59,10 @@ pub fn within(
 /// Searches the interval slice by slice, from the numbers of eigenvalues below both ends; `None` where some slice cannot be searched, or the slices have
 /// another number of them in all, as where one is on an end.
 fn in_slices(
-    (k, m): (&Csc, &Csc),
-    ((low, first), (high, end)): ((f64, usize), (f64, usize)),
+    k: &Csc,
+    m: &Csc,
+    (low, first): (f64, usize),
+    (high, end): (f64, usize),
     below: &impl Fn(f64) -> Result<Option<usize>>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<Pairs>> {

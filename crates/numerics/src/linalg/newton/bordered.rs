@@ -53,10 +53,10 @@ impl Factors {
     }
 
     /// Fills in the bordered matrix [J·u, r·p; row].
-    fn fill_bordered(&mut self, jacobian: &[f64], (u, p): (f64, f64), column: &[f64], row: &[f64]) {
+    fn fill_bordered(&mut self, jacobian: &[f64], u: f64, p: f64, column: &[f64], row: &[f64]) {
         let n = column.len();
         if let Self::Small(lu) = self {
-            lu.fill_bordered(jacobian, (u, p), column, row);
+            lu.fill_bordered(jacobian, u, p, column, row);
             return;
         }
         let columns = jacobian.chunks_exact(n.max(1)).map(|c| (c, u)).chain([(column, p)]);
@@ -169,7 +169,7 @@ impl Bordered {
         let m = self.active.len() + 1;
         self.lu.set_order(m);
         if self.eliminated.is_empty() {
-            self.lu.fill_bordered(jacobian, (u_scale, p_scale), column, row);
+            self.lu.fill_bordered(jacobian, u_scale, p_scale, column, row);
             self.border.clear();
             self.rest.clear();
             return self.lu.factor(interrupt);

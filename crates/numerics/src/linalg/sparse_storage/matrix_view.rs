@@ -217,10 +217,10 @@ impl<'a> MatrixView<'a> {
             );
         }
         let entries = match self.storage {
-            Storage::ColMajor { ld } => self.dense_entries(name, (ld, false), symmetry)?,
-            Storage::RowMajor { ld } => self.dense_entries(name, (ld, true), symmetry)?,
+            Storage::ColMajor { ld } => self.dense_entries(name, ld, false, symmetry)?,
+            Storage::RowMajor { ld } => self.dense_entries(name, ld, true, symmetry)?,
             Storage::Csc { col_ptr, row_idx } => {
-                self.check_columns(name, (col_ptr, row_idx))?;
+                self.check_columns(name, col_ptr, row_idx)?;
                 let columns = GivenColumns {
                     order,
                     col_ptr,
@@ -232,7 +232,7 @@ impl<'a> MatrixView<'a> {
                 if let Some(a) = columns.assembled(|k| self.values.get(k), keep, one_triangle.then_some(symmetry))? {
                     return Ok(a);
                 }
-                self.sparse_entries(name, (col_ptr, row_idx), symmetry)?
+                self.sparse_entries(name, col_ptr, row_idx, symmetry)?
             }
         };
         Csc::from_triplets(order, order, entries)
@@ -269,7 +269,8 @@ impl<'a> MatrixView<'a> {
     fn dense_entries(
         &self,
         name: &str,
-        (ld, row_major): (usize, bool),
+        ld: usize,
+        row_major: bool,
         symmetry: Symmetry,
     ) -> Result<Vec<(usize, usize, Complex64)>> {
         let (inner, outer) = if row_major {
@@ -300,7 +301,7 @@ impl<'a> MatrixView<'a> {
     }
 
     /// Checks the lengths and bounds of compressed columns.
-    fn check_columns(&self, name: &str, (col_ptr, row_idx): (&[i64], &[i64])) -> Result<()> {
+    fn check_columns(&self, name: &str, col_ptr: &[i64], row_idx: &[i64]) -> Result<()> {
         let base = self.index_base as i64;
         if col_ptr.len() != self.cols + 1 {
             return fail!(
@@ -341,7 +342,8 @@ impl<'a> MatrixView<'a> {
     fn sparse_entries(
         &self,
         name: &str,
-        (col_ptr, row_idx): (&[i64], &[i64]),
+        col_ptr: &[i64],
+        row_idx: &[i64],
         symmetry: Symmetry,
     ) -> Result<Vec<(usize, usize, Complex64)>> {
         let base = self.index_base as i64;

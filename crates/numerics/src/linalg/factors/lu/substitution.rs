@@ -31,7 +31,7 @@ impl<T: Number> WithSimd for Substitution<'_, T> {
                 let second = column(k + 1);
                 b[k + 1] = b[k + 1] - x * first[k + 1];
                 let y = b[k + 1];
-                subtract(&mut b[k + 2..], (x, &first[k + 2..]), (y, &second[k + 2..]));
+                subtract(&mut b[k + 2..], x, &first[k + 2..], y, &second[k + 2..]);
             }
         }
         let mut k = n;
@@ -41,7 +41,7 @@ impl<T: Number> WithSimd for Substitution<'_, T> {
             let y = (b[k - 2] - x * first[k - 2]) / second[k - 2];
             (b[k - 1], b[k - 2]) = (x, y);
             k -= 2;
-            subtract(&mut b[..k], (x, &first[..k]), (y, &second[..k]));
+            subtract(&mut b[..k], x, &first[..k], y, &second[..k]);
         }
         if k == 1 {
             b[0] = b[0] / factors[0];
@@ -51,7 +51,7 @@ impl<T: Number> WithSimd for Substitution<'_, T> {
 
 /// b ← b − x p − y q.
 #[inline(always)]
-fn subtract<T: Number>(b: &mut [T], (x, p): (T, &[T]), (y, q): (T, &[T])) {
+fn subtract<T: Number>(b: &mut [T], x: T, p: &[T], y: T, q: &[T]) {
     for ((b, &p), &q) in b.iter_mut().zip(p).zip(q) {
         *b = *b - x * p - y * q;
     }

@@ -83,7 +83,7 @@ impl Crosses {
                 if self.rank == most || !pivot.is_finite() {
                     return Ok(None);
                 }
-                self.take_cross(m, (place, pivot))?;
+                self.take_cross(m, place, pivot)?;
                 group.rank += 1;
                 self.rank += 1;
             }
@@ -101,7 +101,7 @@ impl Crosses {
 
     /// Subtracts the cross through a number from the remaining m rows; its column goes to `left`, its row divided by
     /// the number to `rows`.
-    fn take_cross(&mut self, m: usize, ((i, j), pivot): ((usize, usize), f64)) -> Result<()> {
+    fn take_cross(&mut self, m: usize, (i, j): (usize, usize), pivot: f64) -> Result<()> {
         let (first, row) = (self.left.len(), self.rows.len());
         try_extend(&mut self.left, &self.rest[j * m..(j + 1) * m], CONTEXT)?;
         for column in self.rest.chunks_exact(m) {
@@ -122,7 +122,7 @@ impl Crosses {
     ///
     /// # Errors
     /// Those of the forces.
-    pub fn fill_core(&self, forces: &mut dyn Forces, (m, u): (usize, &mut [f64]), matrix: &mut [f64]) -> Result<()> {
+    pub fn fill_core(&self, forces: &mut dyn Forces, m: usize, u: &mut [f64], matrix: &mut [f64]) -> Result<()> {
         let mut columns = matrix.chunks_exact_mut(self.rank.max(1)).enumerate();
         for group in &self.groups {
             let of_group = &self.left[group.left..group.left + group.rank * m];

@@ -266,7 +266,8 @@ impl KrylovSystem {
     fn iterate(
         &mut self,
         jacobian: &mut dyn Jacobian,
-        (tolerance, most): (f64, usize),
+        tolerance: f64,
+        most: usize,
         b: &mut [f64],
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
@@ -396,7 +397,7 @@ impl LinearSystem for KrylovSystem {
         b: &mut [f64],
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
-        let solved = self.iterate(jacobian, (tolerance, self.most_products), b, interrupt)?;
+        let solved = self.iterate(jacobian, tolerance, self.most_products, b, interrupt)?;
         if self.are_own {
             self.of_own_factors = self.products as f64 / -tolerance.log10();
         }
@@ -416,7 +417,7 @@ impl LinearSystem for KrylovSystem {
         // An iteration converges linearly in the products.
         let digits = -tolerance.log10();
         let most = (self.of_own_factors * digits) as usize + SPARED;
-        self.iterate(jacobian, (tolerance, most.min(self.most_products)), b, interrupt)
+        self.iterate(jacobian, tolerance, most.min(self.most_products), b, interrupt)
     }
 
     fn apply(&mut self, jacobian: &mut dyn Jacobian, x: &[f64], out: &mut [f64]) -> Result<()> {

@@ -89,7 +89,7 @@ impl RankFactors {
         };
         let lu = self.lu.insert(lu);
         lu.set_order(rank);
-        self.crosses.fill_core(forces, (self.group, &mut self.u), lu.matrix())?;
+        self.crosses.fill_core(forces, self.group, &mut self.u, lu.matrix())?;
         match lu.factor(interrupt) {
             Err(e) if e.status == Status::Singular => Ok(false),
             factored => factored.map(|()| true),

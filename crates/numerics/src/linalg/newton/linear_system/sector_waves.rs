@@ -178,7 +178,7 @@ impl RingFactors {
         self.spectrum.fill(Complex64::ZERO);
         for (s, of_sector) in u.chunks_exact(order).enumerate() {
             self.local.copy_from_slice(of_sector);
-            turn((&mut self.local, self.group), &self.turns, (s, n), true);
+            turn(&mut self.local, self.group, &self.turns, s, n, true);
             for (p, sums) in self.spectrum.chunks_exact_mut(order).enumerate() {
                 let root = self.roots[p * s % n];
                 for (sum, x) in sums.iter_mut().zip(&self.local) {
@@ -212,14 +212,14 @@ impl RingFactors {
                     *x += root.re * z.re - root.im * z.im;
                 }
             }
-            turn((&mut self.local, self.group), &self.turns, (s, n), false);
+            turn(&mut self.local, self.group, &self.turns, s, n, false);
             of_sector.copy_from_slice(&self.local);
         }
     }
 }
 
 /// Multiplies the pairs in the groups of sector s by Λˢ, or if `back` by its inverse.
-fn turn((x, group): (&mut [f64], usize), turns: &[Complex64], (s, sectors): (usize, usize), back: bool) {
+fn turn(x: &mut [f64], group: usize, turns: &[Complex64], s: usize, sectors: usize, back: bool) {
     let pairs = turns.len() / sectors;
     let turns = &turns[s * pairs..(s + 1) * pairs];
     for group in x.chunks_exact_mut(group) {
