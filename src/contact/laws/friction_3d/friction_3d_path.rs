@@ -78,8 +78,8 @@ pub(crate) struct PathWalk<'a> {
 }
 
 impl<'a> PathWalk<'a> {
-    pub fn new(path: &'a mut PlanePath, interrupt: &'a Interrupt<'a>) -> Self {
-        let size = path.largest_limit();
+    /// A walk whose largest limit is `size`.
+    pub fn new(path: &'a mut PlanePath, size: f64, interrupt: &'a Interrupt<'a>) -> Self {
         path.pieces.clear();
         Self {
             path,
