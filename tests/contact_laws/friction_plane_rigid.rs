@@ -204,7 +204,7 @@ fn the_jacobian_of_a_short_touch_is_the_derivative_of_its_force() {
     let mut compared = 0;
     for path in &PATHS {
         for w in [0.5, 0.1, 1e-2] {
-            for ratio in [3.0, 1e2] {
+            for ratio in [3.0, 1e2, 1e4] {
                 let Case { law, motion, .. } = case(path, Load::Touch(w), ratio, [1.0, 1.0]);
                 let n = motion.len();
                 let mut way = PlaneFrictionEvaluator::new(&set, &law).unwrap();
@@ -244,5 +244,5 @@ fn the_jacobian_of_a_short_touch_is_the_derivative_of_its_force() {
     }
     println!("{compared} entries, largest relative error {worst:.1e}");
     // Differences of motions of many slip lengths round by up to 1e-5 of the derivatives.
-    assert!(worst < 5e-5 && compared > 12_000, "{worst:e} of {compared}");
+    assert!(worst < 5e-5 && compared > 18_000, "{worst:e} of {compared}");
 }
