@@ -1,7 +1,8 @@
 //! Friction in a plane whose motion is any multiple of its slip length, closed for all or a millionth of it: against the mapping
 //! that returns a trial force to the limit, in any units, and with derivatives against differences.
 
-use crate::common::plane::{evaluate, gap, largest};
+use crate::common::depth::some_of;
+use crate::common::plane::{Random, evaluate, gap, largest};
 use hbvib::Interrupt;
 use hbvib::internals::{Evaluation, HarmonicSet, PlaneFrictionEvaluator, ScaledFriction3d};
 use std::f64::consts::{PI, TAU};
@@ -245,4 +246,63 @@ fn the_jacobian_of_a_short_touch_is_the_derivative_of_its_force() {
     println!("{compared} entries, largest relative error {worst:.1e}");
     // Differences of motions of many slip lengths round by up to 1e-5 of the derivatives.
     assert!(worst < 5e-5 && compared > 18_000, "{worst:e} of {compared}");
+}
+
+#[test]
+fn random_motions_of_any_scale_are_evaluated() {
+    // A harmonic of a force is at most twice its largest value, and every derivative is finite.
+    let mut random = Random(91);
+    let sets = [1, 2, 3, 7, 15].map(|highest| HarmonicSet::all(highest).unwrap());
+    let (mut slipping, mut parting) = (0, 0);
+    for round in 0..some_of(2000, 100_000) {
+        let set = &sets[round % 5];
+        let m = set.packed_len();
+        let mut power = |most: f64| 10.0_f64.powf(most * random.next());
+        let (force, length, ratio) = (power(12.0), power(12.0), power(10.0));
+        let (stiff, swing) = (power(6.0), power(6.0));
+        let has_normal = round % 4 != 0;
+        let kt = force / length;
+        let law = ScaledFriction3d {
+            kt,
+            kn: if has_normal { stiff * kt } else { 0.0 },
+            mu: 0.5,
+            load: force
+                * if has_normal && round % 3 == 0 {
+                    random.next()
+                } else {
+                    1.0
+                },
+            has_normal,
+            slider: [0.0; 2],
+        };
+        let mut motion = random.motion(set, 2, ratio * length);
+        let mut limit = law.mu * law.load.max(0.0);
+        if has_normal {
+            let normal = random.motion(set, 1, swing * force / law.kn);
+            limit += law.mu * law.kn * normal.iter().map(|y| y.abs()).sum::<f64>();
+            motion.extend(normal);
+        }
+        if round % 7 == 0 {
+            // Along a line.
+            let share = if round % 2 == 0 { 0.5 } else { 0.0 };
+            let (first, second) = motion.split_at_mut(m);
+            for (second, first) in second.iter_mut().zip(first) {
+                *second = share * *first;
+            }
+        }
+        let (out, _) = evaluate(&law, set, &motion);
+        slipping += usize::from(out.slip_fraction > 0.0);
+        parting += usize::from(out.open_fraction > 0.0);
+        assert!(
+            largest(&out.force[..2 * m]) <= 2.0 * limit * (1.0 + 1e-9),
+            "round {round}: {:e} of {limit:e}",
+            largest(&out.force[..2 * m])
+        );
+        assert!(
+            out.force.iter().chain(&out.jacobian).all(|x| x.is_finite()),
+            "round {round}"
+        );
+    }
+    println!("{slipping} slip, {parting} part");
+    assert!(slipping > 400 && parting > 400);
 }
