@@ -12,6 +12,7 @@ mod friction_jacobian;
 mod friction_plane;
 mod friction_plane_derivatives;
 mod friction_plane_rest;
+mod friction_plane_rigid;
 mod friction_plane_slip;
 mod iwan;
 mod law;

@@ -21,6 +21,12 @@ use std::f64::consts::TAU;
 /// Kind: tuned; measured on: not recorded.
 const TURN_TOLERANCE: f64 = 3e-5;
 
+/// Largest neglected part of the turn in a panel by a speed across the motion as large as the largest speed, weighted by the panel's
+/// limit against the largest limit and by its share of the turn. Along a straight line the angle is constant, and only its derivatives
+/// tell that a panel is too long: behind a reversal they fall within a few slip lengths.
+/// Kind: tuned; measured on: derivatives of the force at reversals of a line of 1e4 slip lengths.
+const ACROSS_TOLERANCE: f64 = 1e-3;
+
 /// Share of the tolerance below which the next panel is twice as long.
 /// Kind: tuned; measured on: not recorded.
 const EASY: f64 = 1e-3;
@@ -69,6 +75,10 @@ pub(crate) struct PathWalk<'a> {
     interrupt: &'a Interrupt<'a>,
     /// The largest limit.
     size: f64,
+    /// The largest speed |u′|.
+    speed: f64,
+    /// Derivative of the force across the motion by a constant speed there, by size.
+    across: f64,
     /// Derivatives of the force, or in slip of the angle (first row), by the force at the start.
     by_start: [[f64; 2]; 2],
     /// Whether the next piece begins with a closing.
@@ -78,13 +88,19 @@ pub(crate) struct PathWalk<'a> {
 }
 
 impl<'a> PathWalk<'a> {
-    pub fn new(path: &'a mut PlanePath, interrupt: &'a Interrupt<'a>) -> Self {
-        let size = path.largest_limit();
+    /// A walk whose largest limit is `size`.
+    pub fn new(path: &'a mut PlanePath, size: f64, interrupt: &'a Interrupt<'a>) -> Self {
         path.pieces.clear();
+        let speed = path
+            .grid
+            .iter()
+            .fold(0.0_f64, |m, at| m.max(at.rate[0].hypot(at.rate[1])));
         Self {
             path,
             interrupt,
             size,
+            speed,
+            across: 0.0,
             by_start: [[1.0, 0.0], [0.0, 1.0]],
             closes: false,
             length: f64::INFINITY,
@@ -311,15 +327,27 @@ impl<'a> PathWalk<'a> {
         } else if end - from > self.length {
             (end, panel) = (from + self.length, None);
         }
-        let rate = turn_rate(&self.path.at(from), angle);
+        let start = self.path.at(from);
+        let rate = turn_rate(&start, angle);
+        let turned = self.turned_across(&start);
         let (solved, nodes) = loop {
             let nodes = self.nodes(from, end, panel);
             let weight = nodes.iter().fold(0.0_f64, |m, at| m.max(at.limit)) / self.size;
-            let solved = solve(&self.path.tables, &mut self.path.lu, (end - from, angle, rate), &nodes);
+            let solved = solve(
+                &self.path.tables,
+                &mut self.path.lu,
+                (end - from, angle, rate, turned),
+                &nodes,
+            );
             let last = end - from < 2.0 * FRICTION_3D_PATH_SHORTEST * self.path.turn;
+            let share = (end - from) / self.path.turn;
+            let neglected = |solved: &Solved| {
+                let across = self.speed * share * solved.across.tail / ACROSS_TOLERANCE;
+                weight * across.max(solved.tail / TURN_TOLERANCE)
+            };
             match solved {
-                Some(solved) if last || solved.tail * weight <= TURN_TOLERANCE => {
-                    let eases = solved.tail * weight < EASY * TURN_TOLERANCE;
+                Some(solved) if last || neglected(&solved) <= 1.0 => {
+                    let eases = neglected(&solved) < EASY;
                     self.length = if eases { 2.0 } else { 1.0 } * (end - from);
                     break (solved, nodes);
                 }
@@ -348,7 +376,12 @@ impl<'a> PathWalk<'a> {
             // The angle between nodes is less exact than at the end of a panel: solved up to the event, it corrects it.
             for round in 0..FRICTION_3D_PATH_CORRECTIONS {
                 let nodes = self.nodes(from, stop, None);
-                part = solve(&self.path.tables, &mut self.path.lu, (stop - from, angle, rate), &nodes);
+                part = solve(
+                    &self.path.tables,
+                    &mut self.path.lu,
+                    (stop - from, angle, rate, turned),
+                    &nodes,
+                );
                 let Some(part) = &part else { break };
                 let step = correction(
                     &part.panel,
@@ -400,13 +433,34 @@ impl<'a> PathWalk<'a> {
         Some(from + (end - from) * share)
     }
 
+    /// Derivative of the angle by a speed across the motion where a panel of slip starts. After a closing, and where nothing is known of
+    /// the force before, it is that of a direction that follows the motion.
+    fn turned_across(&self, start: &PlaneInstant) -> f64 {
+        let follows = start.rate[0].hypot(start.rate[1]).recip();
+        let turned = self.across / start.limit;
+        if turned > 0.0 && turned.is_finite() {
+            turned
+        } else if follows.is_finite() {
+            follows
+        } else {
+            0.0
+        }
+    }
+
     /// Adds a panel of slip.
     fn pass(&mut self, from: f64, end: f64, solved: &Solved) -> Result<()> {
         self.by_start[0] = self.by_start[0].map(|b| solved.by_start * b);
+        let last = solved.panel.limits[RADAU_STAGES - 1];
+        self.across = last * solved.across.end;
         self.push(from, end, &PlaneForce::Slip(solved.panel))
     }
 
     fn push(&mut self, start: f64, end: f64, force: &PlaneForce) -> Result<()> {
+        match force {
+            PlaneForce::Open => self.across = 0.0,
+            PlaneForce::Stick { .. } => self.across += end - start,
+            PlaneForce::Slip(_) => (),
+        }
         let closes = core::mem::take(&mut self.closes);
         let piece = PlanePiece {
             start,

@@ -68,7 +68,7 @@ pub(crate) fn find(normal: &[Piece], path: &mut PlanePath, interrupt: &Interrupt
         // The sides touch without load.
         path.repetition = Repetition::FromNothing;
         let turn = path.turn;
-        return PathWalk::new(path, interrupt).open(0.0, turn);
+        return PathWalk::new(path, 0.0, interrupt).open(0.0, turn);
     }
     let settled = settle(path)?;
     if let Some(settled) = &settled
@@ -82,16 +82,25 @@ pub(crate) fn find(normal: &[Piece], path: &mut PlanePath, interrupt: &Interrupt
 
 /// Follows every closed time from its closing on.
 fn closed_times(normal: &[Piece], path: &mut PlanePath, interrupt: &Interrupt<'_>) -> Result<()> {
-    let mut walk = PathWalk::new(path, interrupt);
     let closed_ends = [normal.first(), normal.last()].map(|p| p.is_some_and(Piece::is_closed));
     // The turn of the normal pieces begins anywhere; a closed time across its begin counts as one.
     let cut = closed_ends == [true, true];
-    for (i, piece) in normal.iter().enumerate().skip(usize::from(cut)) {
-        let end = if cut && i + 1 == normal.len() {
+    let end_of = |i: usize| {
+        if cut && i + 1 == normal.len() {
             normal[0].end + TAU
         } else {
-            piece.end
-        };
+            normal[i].end
+        }
+    };
+    let pieces = || normal.iter().enumerate().skip(usize::from(cut));
+    // A touch may be shorter than the distance of the nodes: its limit then rises and falls between them.
+    let middles = pieces()
+        .filter(|(_, piece)| piece.is_closed())
+        .map(|(i, piece)| path.at(piece.start + 0.5 * (end_of(i) - piece.start)).limit);
+    let size = middles.fold(path.largest_limit(), f64::max);
+    let mut walk = PathWalk::new(path, size, interrupt);
+    for (i, piece) in pieces() {
+        let end = end_of(i);
         if piece.is_closed() {
             let phase = walk.close(piece.start);
             walk.follow((piece.start, end), phase, true)?;
@@ -326,7 +335,7 @@ fn repeat(path: &mut PlanePath, settled: Option<&StuckSlider>, interrupt: &Inter
     let (mut plain, mut between) = (1_u32, 1_u32);
     for turn in 0..TURNS {
         interrupt.check()?;
-        let mut walk = PathWalk::new(path, interrupt);
+        let mut walk = PathWalk::new(path, size, interrupt);
         let begin = walk.begin(start, force);
         if let Phase::Slip { angle } = begin {
             let limit = walk.limit(start);

@@ -34,20 +34,31 @@ pub(crate) const FRICTION_3D_SLIP_ROUNDING: f64 = 1e-13;
 /// Kind: cap.
 const FRICTION_3D_SLIP_HALVINGS: usize = 20;
 
+/// The turn by a constant speed 1 across the motion, as far as a panel continues it: R δθ′ = 1 − e·u′ δθ.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Across {
+    /// Size of its last two terms in Legendre polynomials.
+    pub tail: f64,
+    /// Its value at the end.
+    pub end: f64,
+}
+
 /// A solved panel.
 pub(crate) struct Solved {
     pub panel: SlipPanel,
     /// Size of the last two terms of θ in Legendre polynomials.
     pub tail: f64,
+    /// The response to a speed across the motion.
+    pub across: Across,
     /// Derivative of the angle at the end by the one at the start.
     pub by_start: f64,
 }
 
-/// Slip over a panel of length `h` from `angle`, where it turns at the rate `rate`; `None` where Newton's method does not converge.
+/// Slip over a panel of length `h` from `angle`, where it turns at the rate `rate` and by `turned` for a speed 1 across; `None` where Newton's method does not converge.
 pub(crate) fn solve(
     tables: &RadauTables,
     lu: &mut Lu<f64>,
-    (h, angle, rate): (f64, f64, f64),
+    (h, angle, rate, turned): (f64, f64, f64, f64),
     nodes: &[PlaneInstant; RADAU_STAGES],
 ) -> Option<Solved> {
     let mut panel = SlipPanel {
@@ -97,16 +108,24 @@ pub(crate) fn solve(
     if largest(&step).is_nan() || largest(&step) >= FRICTION_3D_SLIP_LAST_STEP || !turns_slowly {
         return None;
     }
-    let tail = tables
-        .tail
-        .iter()
-        .map(|row| row.iter().zip(&rates).map(|(c, g)| c * g).sum::<f64>().abs())
-        .sum::<f64>();
+    let tail = |values: &[f64; RADAU_STAGES]| {
+        let last = |row: &[f64; RADAU_STAGES]| row.iter().zip(values).map(|(c, g)| c * g).sum::<f64>().abs();
+        tables.tail.iter().map(last).sum::<f64>()
+    };
     let mut ones = [1.0; RADAU_STAGES];
     lu.solve(&mut ones);
+    let mut across: [f64; RADAU_STAGES] = core::array::from_fn(|i| {
+        let sum = tables.integrals[i].iter().zip(&panel.limits);
+        turned + h * sum.map(|(a, limit)| a / limit).sum::<f64>()
+    });
+    lu.solve(&mut across);
     Some(Solved {
         panel,
-        tail: h * tail,
+        tail: h * tail(&rates),
+        across: Across {
+            tail: tail(&across),
+            end: across[RADAU_STAGES - 1],
+        },
         by_start: ones[RADAU_STAGES - 1],
     })
 }
@@ -133,6 +152,7 @@ pub(crate) fn along_motion(nodes: &[PlaneInstant; RADAU_STAGES], angle: f64) -> 
             across: [0.0; RADAU_STAGES],
         },
         tail: 0.0,
+        across: Across::default(),
         by_start: 0.0,
     }
 }
