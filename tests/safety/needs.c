@@ -187,6 +187,35 @@ static void responses(void)
     }
 }
 
+/* Stability along a response: its matrices grow with the wheel, those of the response with a sector. */
+static void stability(void)
+{
+    static const int64_t sectors[3] = {3, 24, 96}, harmonics[3] = {1, 3, 9};
+    int i, j;
+    for (i = 0; i < 3; i++) {
+        for (j = 0; j < 6; j++) {
+            hbvib_solver_options s = fixed(harmonics[j % 3]);
+            hbvib_model *model = NULL;
+            hbvib_status status;
+            int64_t before = 0;
+            sizes size;
+            if (ring_of(sectors[i], 1.5e-6, &model) != HBVIB_OK) abort();
+            if (j >= 3) {
+                /* Another contact, which slips, on the mass that is driven. */
+                hbvib_contact c = law(HBVIB_JENKINS, 0, HBVIB_GROUND, HBVIB_GROUND);
+                c.kt = 1e4;
+                c.mu = c.preload = 1;
+                if (hbvib_model_add_contact(model, &c, NULL) != HBVIB_OK) abort();
+            }
+            s.stability = j % 2 == 0 ? HBVIB_STABILITY_WHEEL : HBVIB_STABILITY_WAVE;
+            size = sizes_of(model);
+            status = respond(model, &s, 1300, &before);
+            judge("stability of a response", before, status, (int64_t)need_of_a_branch(&size, &s, 6));
+            if (hbvib_model_free(model) != HBVIB_OK) abort();
+        }
+    }
+}
+
 int main(void)
 {
     hbvib_contact c = law(HBVIB_CUBIC, 0, HBVIB_GROUND, HBVIB_GROUND);
@@ -203,6 +232,7 @@ int main(void)
     residual("chain", chain, 1, 2, 4 * 3 * LONG);
     too_large();
     responses();
+    stability();
     printf("%.2f of the told bytes at most, %d failures\n", largest, failures);
     return failures > 0;
 }

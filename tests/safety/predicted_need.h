@@ -115,19 +115,6 @@ static double need_of_a_result(const sizes *s, double h, double samples)
     return need_of_a_law(s->most, h, samples) + 64 * (h + 1) * ((double)s->dofs + s->motions);
 }
 
-/* Of a forced response or a nonlinear mode with at most so many points. */
-static double need_of_a_branch(const sizes *s, const hbvib_solver_options *o, double points)
-{
-    const int automatic = o->tolerance > 0;
-    const double h = highest(o), samples = most_samples(o);
-    const double limit = o->memory_limit > 0 ? (double)o->memory_limit : HUGE_VAL;
-    const double equations = smaller(limit, need_of_equations(s, h, samples));
-    const double estimate = automatic || o->estimate_error ? smaller(limit, 100e6 + 4 * equations) : 0;
-    const double pieces = s->most > 1 ? need_of_a_path(h) : 0;
-    return need_of_structure(s, h) + (automatic ? 4 : 2) * equations + estimate + pieces +
-           points * (48 * (h + 1) * ((double)s->dofs + s->motions) + 512) + need_of_linear_modes(s) + 2 * MIB;
-}
-
 /* Of the equations of a stored point and of its structure, for derivatives at it. */
 static double need_of_a_branch_point(const sizes *s, double h, double samples)
 {
@@ -153,6 +140,21 @@ static double need_of_multipliers(const sizes *s, double h)
 {
     const double states = states_of(s);
     return need_in_time(s, h) + 160 * states * states;
+}
+
+/* Of a forced response or a nonlinear mode with at most so many points. Stability along a response is that of its points, each
+ * after the other: shooting has matrices of the whole wheel, whatever the size of a sector. */
+static double need_of_a_branch(const sizes *s, const hbvib_solver_options *o, double points)
+{
+    const int automatic = o->tolerance > 0;
+    const double h = highest(o), samples = most_samples(o);
+    const double limit = o->memory_limit > 0 ? (double)o->memory_limit : HUGE_VAL;
+    const double equations = smaller(limit, need_of_equations(s, h, samples));
+    const double estimate = automatic || o->estimate_error ? smaller(limit, 100e6 + 4 * equations) : 0;
+    const double pieces = s->most > 1 ? need_of_a_path(h) : 0;
+    const double stability = o->stability != HBVIB_STABILITY_NONE ? need_of_multipliers(s, h) : 0;
+    return need_of_structure(s, h) + (automatic ? 4 : 2) * equations + estimate + pieces + stability +
+           points * (48 * (h + 1) * ((double)s->dofs + s->motions) + 512) + need_of_linear_modes(s) + 2 * MIB;
 }
 
 #endif

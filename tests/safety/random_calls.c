@@ -505,10 +505,10 @@ static void solve(void)
     struct solved from = {sizes_of(model), 0, 0, model};
     snprintf(solving, sizeof solving,
              "; n = %lld, wheel = %lld, m = %g, d = %g, tolerance = %g, harmonics = %lld and %lld, samples = %lld, points = %lld, step_max = %g, "
-             "limit = %lld, flexibility = %d, bytes saved = %lld",
+             "limit = %lld, flexibility = %d, stability = %d, bytes saved = %lld",
              (long long)from.model.dofs, (long long)from.model.wheel, from.model.motions, from.model.most, s->tolerance, (long long)s->harmonics,
              (long long)s->max_harmonics, (long long)s->samples, (long long)s->max_points, s->step_max, (long long)s->memory_limit,
-             (int)s->flexibility, (long long)from.model.saved);
+             (int)s->flexibility, (int)s->stability, (long long)from.model.saved);
     const int estimates = s->tolerance > 0 || s->estimate_error;
     solved_model = model;
     from.harmonics = highest(s);
