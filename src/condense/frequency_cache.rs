@@ -32,9 +32,9 @@ const ALL_SLOPES_UP_TO: usize = 64;
 /// Kind: tuned; measured on: not recorded.
 const ALL_MODAL_SLOPES_UP_TO: usize = 8;
 
-/// Coordinates from which a table by factorisation is made of its last column alone where no contact acts on the motion. A wheel
-/// of 24 contacts, all of which stick over most of its range, takes a twentieth of the time there; with fewer
-/// contacts the other columns cost less than the factors.
+/// Coordinates from which a table from modes is made of its last column alone where no contact acts on the motion. A wheel
+/// of 24 contacts, all of which stick over most of its range, takes a twentieth of the time there. Tables by factorisation
+/// are always made so there: a harmonic without force then needs no factors at all.
 /// Kind: tuned; measured on: a wheel of 24 contacts.
 const EXCITED_ALONE_FROM: usize = 8;
 
@@ -198,7 +198,7 @@ impl FrequencyCache {
         (omega, contacts): (f64, bool),
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        let alone = !contacts && condensed.coordinates() >= EXCITED_ALONE_FROM && !condensed.has_exchanges();
+        let alone = !contacts && self.excited_alone_takes_less(condensed) && !condensed.has_exchanges();
         let is_current = |whole| self.tabulated == Some((omega, whole));
         if is_current(true) || (alone && is_current(false)) {
             return Ok(());
@@ -227,7 +227,11 @@ impl FrequencyCache {
             interrupt.check()?;
             let slopes = match self.has_slopes {
                 false => Slopes::None,
-                true if may_lack && (condensed.coordinates() > ALL_SLOPES_UP_TO || condensed.tuned().is_some()) => {
+                true if may_lack
+                    && (condensed.coordinates() > ALL_SLOPES_UP_TO
+                        || condensed.tuned().is_some()
+                        || workspace.solves_side_by_side(condensed, i)?) =>
+                {
                     Slopes::OfResponse
                 }
                 true => Slopes::All,
@@ -242,6 +246,13 @@ impl FrequencyCache {
         Ok(())
     }
 
+    /// Whether tables without the columns of the contacts save more than is lost where these are needed after all.
+    fn excited_alone_takes_less(&self, condensed: &Condensed) -> bool {
+        let by_factors = || self.of_modes.tables.iter().all(Option::is_none);
+        let coordinates = condensed.coordinates();
+        coordinates >= EXCITED_ALONE_FROM || (coordinates > 0 && by_factors())
+    }
+
     /// Makes the tables with the column of the excitation alone: by sums where these are accurate, else by
     /// factorisation.
     fn tabulate_excited(&mut self, condensed: &Condensed, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
@@ -251,6 +262,11 @@ impl FrequencyCache {
             }
             interrupt.check()?;
             (self.lacks_slopes[i], self.is_modal[i]) = (false, false);
+            if !condensed.blocks()[i].has_force() {
+                table.value.fill(Complex64::ZERO);
+                table.slope.fill(Complex64::ZERO);
+                continue;
+            }
             if let Some(Some(modal)) = self.of_modes.tables.get(i)
                 && modal.evaluate_excited(omega, &mut self.of_modes.work[0], table, interrupt)?
             {
@@ -383,3 +399,7 @@ fn worst_column(a: &[Complex64], b: &[Complex64], outputs: usize) -> (usize, f64
     }
     largest
 }
+
+#[cfg(test)]
+#[path = "frequency_cache_tests.rs"]
+mod tests;

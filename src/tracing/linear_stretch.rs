@@ -14,7 +14,8 @@ use crate::options::Range;
 use crate::results::SpecialKind;
 use crate::roots::least;
 use crate::tracing::course::{BranchTracer, Stretch, some_unless_lost};
-use crate::tracing::linear_peaks::{ROUNDING, find_peaks, record_on_line};
+use crate::tracing::linear_onset::Onset;
+use crate::tracing::linear_peaks::{find_peaks, record_on_line};
 use crate::tracing::resonance_grid::LinearGrid;
 use crate::tracing::response_kinks;
 
@@ -173,16 +174,15 @@ fn share_at(tracer: &BranchTracer<'_>, analysis: &mut dyn Traceable, here: &Poin
     }
 }
 
-/// The last point between `here` and a value beyond it at which every contact is linear, by bisection.
+/// The last point between `here` and a value beyond it at which every contact is linear.
 fn onset(tracer: &BranchTracer<'_>, analysis: &mut dyn Traceable, here: &Point, beyond: f64) -> Result<Next> {
     let mut inside = here.try_clone()?;
-    let mut outside = beyond;
-    while (outside - inside.parameter()).abs() > ROUNDING * outside.abs() {
-        let middle = 0.5 * (inside.parameter() + outside);
-        match analysis.linear_at(&inside, middle, tracer.interrupt)? {
-            Some(point) => inside = point,
-            None => outside = middle,
-        }
+    let mut bracket = Onset::new(here.parameter(), analysis.linear_share(here)?, beyond);
+    while let Some(at) = bracket.next() {
+        let found = analysis.linear_at(&inside, at, tracer.interrupt)?;
+        let share = found.as_ref().map(|point| analysis.linear_share(point));
+        bracket.take(at, share.transpose()?);
+        inside = found.unwrap_or(inside);
     }
     Ok(Next::Onset(inside, beyond))
 }

@@ -19,6 +19,7 @@ pub(crate) mod branch_tracer;
 mod cold_start;
 mod course;
 pub(crate) mod inner_ends;
+mod linear_onset;
 mod linear_peaks;
 pub(crate) mod linear_resonances;
 mod linear_stretch;

@@ -12,6 +12,20 @@ use num_complex::Complex64;
 const SIDE_BY_SIDE_FROM: usize = 8;
 
 impl Workspace {
+    /// Whether the factors of the i-th carried harmonic solve the columns of all contacts side by side. All slopes then take longer than
+    /// the factors that those along one motion need.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub(crate) fn solves_side_by_side(&mut self, condensed: &Condensed, i: usize) -> Result<bool> {
+        let coordinates = condensed.coordinates();
+        if coordinates < SIDE_BY_SIDE_FROM {
+            return Ok(false);
+        }
+        let dynamic = made(&mut self.dynamic, condensed)?;
+        Ok(dynamic.slender(condensed, i, coordinates + 1).is_some())
+    }
+
     /// Fills the table, but for slopes other than those of the response, with factors that solve many right sides side by side, and keeps
     /// the column of the excitation alone; `false` where the current factors are not such.
     pub(crate) fn tabulate_side_by_side(

@@ -63,6 +63,9 @@ pub(crate) fn is_worth_its_columns(
     if columns > most {
         return Ok(false);
     }
+    if factors.beside_modes {
+        return Ok(true);
+    }
     let of_one = of_factors(below.entries, stiffness.columns());
     let times = if factors.along_range { ALONG_RANGE } else { AT_ONE };
     Ok(OF_COLUMNS * (columns as f64).powi(3) <= times * factors.harmonics as f64 * of_one)

@@ -36,6 +36,8 @@ pub(crate) struct Factors {
     pub harmonics: usize,
     /// Whether factors are needed along a range of frequencies.
     pub along_range: bool,
+    /// Whether all modes or poles are possible, whose work the basis was compared with before.
+    pub beside_modes: bool,
 }
 
 /// Assembled matrices of a wave: K, M and the damping.

@@ -292,11 +292,11 @@ fn reference_frequency(request: &Request<'_>, group: &Group) -> f64 {
     request.sweep.of_harmonic(lowest)[1]
 }
 
-/// Size and use of the factors that the basis of a wave competes with: for structures too large for all modes, up to
-/// a size where factors are too slow.
+/// Size and use of the factors that the basis of a wave competes with, up to a size where factors are too slow; where all modes are
+/// possible, the size of the basis alone decides whether it is given up.
 fn instead_of(request: &Request<'_>, group: &Group) -> Option<Factors> {
     let n = request.ndof();
-    if request.is_forced() || n <= ALL_UP_TO || n > WAVE_REDUCTION_DIRECT_UP_TO {
+    if request.is_forced() || n > WAVE_REDUCTION_DIRECT_UP_TO {
         return None;
     }
     let numbers = group.members.iter().map(|&(i, _)| request.numbers[i]);
@@ -305,6 +305,7 @@ fn instead_of(request: &Request<'_>, group: &Group) -> Option<Factors> {
         highest: request.sweep.of_harmonic(highest)[2],
         harmonics: group.members.len(),
         along_range: !request.sweep.is_single(),
+        beside_modes: n <= ALL_UP_TO,
     })
 }
 

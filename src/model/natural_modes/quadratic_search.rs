@@ -111,9 +111,10 @@ pub fn within(
     }
     let middle = 0.5 * (range.low() + range.high());
     let radius = SQRT_2 * (0.5 * range.width()).max(RATIO_WITHIN * middle);
-    let mut search = operator(problem, Complex64::new(0.0, middle), interrupt)?;
+    let middle = Complex64::new(0.0, middle);
+    let mut search = operator(problem, middle, interrupt)?;
     // A shift that was moved aside lies off the middle.
-    let reach = radius + QUADRATIC_SEARCH_ASIDE * middle;
+    let reach = radius + (search.shift() - middle).norm();
     let near = match search.search(Goal::Within(reach, most)) {
         Err(e) if e.status == Status::NoConvergence => return Ok(None),
         near => near?,

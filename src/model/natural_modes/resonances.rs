@@ -5,6 +5,7 @@ use crate::error::{Error, Result, Status, check_memory, try_copy, try_extend, tr
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::eigen;
 use crate::linalg::exact_sums::quadratic::about_quadratic;
+use crate::linalg::factors::inertia::eigenvalues_below;
 use crate::linalg::iterative::{lanczos, spectrum_slices};
 use crate::linalg::libraries::{DMatrix, Schur};
 use crate::linalg::sparse_storage::held_rows::MovingRows;
@@ -272,9 +273,14 @@ fn modes_within(k: &Csc, m: &Csc, range: Range, interrupt: &Interrupt<'_>) -> Re
     // Rounding at an end loses no mode there.
     let interval = (low * low - AT_END * high * high, (1.0 + AT_END) * high * high);
     if n > DENSE_IF_MANY {
-        let pairs = lanczos::lowest(k, m, FIRST_MODES, interrupt)?;
-        if pairs.values.len() < FIRST_MODES || pairs.values.last().is_some_and(|&x| x > high * high) {
-            return Ok(Some(pairs));
+        // The law of inertia tells whether the lowest modes would reach beyond the range.
+        let real = k.is_real() && m.is_real();
+        let below = eigenvalues_below(k, (interval.1, m), real, |_| Ok(()), interrupt)?;
+        if below.is_none_or(|below| below.count < FIRST_MODES) {
+            let pairs = lanczos::lowest(k, m, FIRST_MODES, interrupt)?;
+            if pairs.values.len() < FIRST_MODES || pairs.values.last().is_some_and(|&x| x > high * high) {
+                return Ok(Some(pairs));
+            }
         }
         let most = RESONANCES_MOST_MODES.max(RESONANCES_ENTRIES / n);
         return spectrum_slices::within((k, m), interval, most, interrupt);

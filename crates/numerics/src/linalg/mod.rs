@@ -12,5 +12,5 @@ mod vectors;
 
 pub use vectors::{
     COPIED_UP_TO, SAFE_SQUARES, add_outer_products, add_outer_products_to, add_product, dot, expand, first_product,
-    inner, norm, power_of_two, remove, transposed_products,
+    inner, inner_in_parts, norm, power_of_two, remove, transposed_products,
 };

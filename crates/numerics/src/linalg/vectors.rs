@@ -13,6 +13,21 @@ pub fn inner(a: &[Complex64], b: &[Complex64]) -> Complex64 {
     a.iter().zip(b).map(|(a, b)| a.conj() * b).sum()
 }
 
+/// Inner product aᴴ b in four partial sums, which the processor adds in parallel.
+#[must_use]
+#[inline]
+pub fn inner_in_parts(a: &[Complex64], b: &[Complex64]) -> Complex64 {
+    let mut sums = [Complex64::ZERO; 4];
+    let (left, right) = (a.chunks_exact(4), b.chunks_exact(4));
+    let rest = inner(left.remainder(), right.remainder());
+    for (a, b) in left.zip(right) {
+        for ((s, a), b) in sums.iter_mut().zip(a).zip(b) {
+            *s += a.conj() * b;
+        }
+    }
+    sums.iter().sum::<Complex64>() + rest
+}
+
 /// v ← v − part q.
 #[inline]
 pub fn remove(v: &mut [Complex64], q: &[Complex64], part: Complex64) {

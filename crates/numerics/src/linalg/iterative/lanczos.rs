@@ -13,7 +13,7 @@ use crate::linalg::dense::eigen::{self, Pairs};
 use crate::linalg::dense::tridiagonal;
 use crate::linalg::factors::shifted_inverse::{BelowAll, Inverse, Place, below_all, definite_inverse};
 use crate::linalg::sparse_storage::sparse::Csc;
-use crate::linalg::{inner, remove};
+use crate::linalg::{inner, inner_in_parts, remove};
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
@@ -472,19 +472,19 @@ impl LanczosSearch<'_> {
     /// Removes from v its components along the basis and along the vectors found, again where little of it is left: once leaves rounding
     /// of the size of v before, relative to v after (Giraud & Langou 2002, doi:10.1093/imanum/22.4.521).
     fn orthogonalise(&self, v: &mut [Complex64], run: &Run) -> Result<()> {
-        let size = |v: &[Complex64]| -> Result<f64> { Ok(inner(v, &self.times_mass(v)?).re.max(0.0)) };
+        let size = |v: &[Complex64]| -> Result<f64> { Ok(inner_in_parts(v, &self.times_mass(v)?).re.max(0.0)) };
         // By Lanczos' recurrence the components along the last two are all that is not rounding.
         let last = run.basis.len().saturating_sub(2);
         for (q, mq) in run.basis[last..].iter().zip(&run.weighted[last..]) {
-            remove(v, q, inner(mq, v));
+            remove(v, q, inner_in_parts(mq, v));
         }
         for _ in 0..2 {
             let before = size(v)?;
             for (q, mq) in run.basis.iter().zip(&run.weighted) {
-                remove(v, q, inner(mq, v));
+                remove(v, q, inner_in_parts(mq, v));
             }
             for (_, q, mq) in &self.found {
-                remove(v, q, inner(mq, v));
+                remove(v, q, inner_in_parts(mq, v));
             }
             if size(v)? >= ENOUGH_LEFT * before {
                 break;

@@ -14,7 +14,7 @@ use crate::linalg::dense::general_eigen;
 use crate::linalg::factors::factor::Factor;
 use crate::linalg::iterative::lanczos;
 use crate::linalg::sparse_storage::sparse::{Csc, Form};
-use crate::linalg::{inner, remove};
+use crate::linalg::{inner, inner_in_parts, remove};
 use num_complex::Complex64;
 
 /// Residual of an eigenvalue of the operator, relative to it, that counts as converged.
@@ -48,6 +48,10 @@ const NEAR_SHIFT_ALIKE: f64 = 1e-9;
 /// Error of an eigenvalue of the operator, relative to it, from which on those farther away do not count as found.
 /// Kind: rounding.
 const POOR: f64 = 1e-7;
+
+/// Share of a vector that is left after its components are removed, from which that need not be repeated.
+/// Kind: rounding.
+const NEAR_SHIFT_LEFT: f64 = 0.5;
 
 const CONTEXT: &str = "the damped modes";
 
@@ -132,6 +136,12 @@ impl<'a> NearShift<'a> {
             runs: 0,
             interrupt,
         })
+    }
+
+    /// The shift σ.
+    #[must_use]
+    pub fn shift(&self) -> Complex64 {
+        self.shift
     }
 
     /// Finds the eigenvalues of the goal, in addition to those of earlier searches.
@@ -352,18 +362,22 @@ impl<'a> NearShift<'a> {
         Ok(state)
     }
 
-    /// Removes from v, twice, its components along the kept vectors and those of the run; the latter are added to
-    /// `column`.
+    /// Removes from v its components along the kept vectors and those of the run, again where little of it is left; those along the run
+    /// are added to `column`.
     fn orthogonalise(&self, v: &mut [Complex64], run: &Run, column: &mut [Complex64]) -> Result<()> {
         for _ in 0..2 {
             self.interrupt.check()?;
+            let before = size(v);
             for (_, q) in &self.kept {
-                remove(v, q, inner(q, v));
+                remove(v, q, inner_in_parts(q, v));
             }
             for (q, h) in run.basis.iter().zip(column.iter_mut()) {
-                let part = inner(q, v);
+                let part = inner_in_parts(q, v);
                 remove(v, q, part);
                 *h += part;
+            }
+            if size(v) >= NEAR_SHIFT_LEFT * before {
+                break;
             }
         }
         Ok(())
