@@ -18,6 +18,7 @@ mod fit_uncertainty;
 mod life;
 mod life_of_varying_load;
 mod life_patch;
+mod optima_at_corners;
 mod ring_damper_preload;
 mod sampled_curves;
 mod tracked_damping;

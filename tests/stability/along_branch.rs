@@ -4,8 +4,8 @@ use crate::common::peers::structure;
 use crate::common::{BASE, amplitude_range, harmonics, one_mass, solve_at, sweep};
 use crate::{multipliers, ordinary};
 use hbvib::{
-    Bifurcation, BifurcationKind, Contact, ContactKind, Hooks, Model, Polynomial, SolverOptions, Status, Waves,
-    nonlinear_mode,
+    Bifurcation, BifurcationKind, Contact, ContactKind, FloquetOptions, Hooks, MatrixKind, MatrixView, Model,
+    Polynomial, SolverOptions, Status, Waves, floquet, nonlinear_mode,
 };
 use std::f64::consts::TAU;
 use std::time::Instant;
@@ -163,4 +163,54 @@ fn a_search_in_time_that_leaves_its_point_ends() {
     let found = sweep(&model, &of_wave(5), 0.4, 1.001, &[]);
     assert_eq!(found.status(), Status::Ok);
     assert!(found.points() > 40, "{}", found.points());
+}
+
+/// Behind a fold the motion of the point before it is near, too: its stability was told for that of the upper branch, 1.18 for 0.742.
+/// The reference is an integration from event to event by exponentials of matrices.
+#[test]
+fn a_motion_behind_a_fold_has_its_own_stability() {
+    let mut model = Model::new(1).unwrap();
+    let stiffness = 1.819_931_97;
+    model
+        .set_matrix(MatrixKind::Mass, &MatrixView::dense(1, &[1.040_699_41]))
+        .unwrap();
+    model
+        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(1, &[stiffness]))
+        .unwrap();
+    model
+        .set_matrix(MatrixKind::Damping, &MatrixView::dense(1, &[0.03 * stiffness]))
+        .unwrap();
+    let stop = Contact::unilateral(Some(0), None, 4.035_413_456_666_588, 0.334_545_949_573_823_2);
+    model.add_contact(&stop).unwrap();
+    model.add_force(0, 1, 1.306_675_478_260_829_8.into()).unwrap();
+    let branch = sweep(&model, &of_wave(9), 0.578_629_838_414_723, 0.303_826_481_702_321_5, &[]);
+    // The frequency falls, rises between the folds at 0.5510 and 0.5536, and falls again.
+    let omega = branch.omega();
+    let behind = (1..branch.points())
+        .rfind(|&i| omega[i] > omega[i - 1] && omega[i] > 0.55)
+        .unwrap();
+    let mut upper = 0;
+    for point in 0..branch.points() {
+        let (omega, radius) = (branch.omega()[point], branch.floquet_radius()[point]);
+        // Below, nine harmonics are too few to tell which motion a point stands for.
+        if omega < 0.5 {
+            continue;
+        }
+        // By itself, without a neighbour; none is found right at the fold.
+        let own = floquet(
+            &model,
+            &branch,
+            point,
+            &FloquetOptions::default(),
+            &mut Hooks::default(),
+        );
+        if let Ok(own) = own {
+            assert!((radius - own.radius).abs() < 1e-3, "{omega}: {radius} {}", own.radius);
+        }
+        if point > behind && omega > 0.5521 {
+            assert!((radius - 0.742).abs() < 1e-3, "{omega}: {radius}");
+            upper += 1;
+        }
+    }
+    assert!(upper > 2, "{upper}");
 }
