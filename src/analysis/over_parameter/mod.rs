@@ -2,6 +2,7 @@
 
 pub(crate) mod damping_maximum;
 pub(crate) mod followed;
+pub(crate) mod optimum_search;
 pub(crate) mod parameter_curve;
 pub mod parameter_range;
 pub mod parameter_response;

@@ -11,30 +11,12 @@ use crate::interrupt::{Interrupt, Phase};
 use crate::problem::Problem;
 use crate::results::{Branch, Optimum, ParameterData, SpecialKind, Turn};
 use crate::tracing::branch_recorder::largest_change;
-use num_complex::Complex64;
 
 const CONTEXT: &str = "the parameter response";
 
-/// Change of a result over a step by its slope at one end, relative to it, that is none.
-/// Kind: rounding.
-const PLATEAU_SLOPE: f64 = 1e-10;
-
-/// Halvings between a plateau and the other end of a step: an optimum within a thousandth of the step from the edge may be missed.
-/// Kind: cap.
-const PLATEAU_HALVINGS: usize = 10;
-
-/// Departure of a change from that of the mean slope, over that of the larger slope, that shows a corner; and halvings of a step
-/// in which corners are sought.
-/// Kind: tuned; measured on: 800 responses of one slider over its limit.
-const CORNER: f64 = 0.05;
-const CORNER_HALVINGS: usize = 6;
-
-/// A point with its level of harmonics.
-type AtLevel = (Point, usize);
-
 /// Kind of a point beside the curve.
 #[derive(Clone, Copy)]
-enum Beside {
+pub(super) enum Beside {
     /// The solution at the requested value with this index.
     At(usize),
     /// The smallest or largest result.
@@ -73,14 +55,14 @@ pub(crate) struct Wanted<'a> {
 
 /// Records one curve over the parameter.
 pub(crate) struct CurveRecorder<'a> {
-    followed: Followed<'a>,
-    settings: Settings,
+    pub(super) followed: Followed<'a>,
+    pub(super) settings: Settings,
     wanted: Wanted<'a>,
     controller: AdaptivityController,
     branch: &'a mut Branch,
     data: &'a mut ParameterData,
     beside: Vec<Located>,
-    interrupt: &'a Interrupt<'a>,
+    pub(super) interrupt: &'a Interrupt<'a>,
     missed: bool,
 }
 
@@ -221,95 +203,11 @@ impl<'a> CurveRecorder<'a> {
                 locator.at_parameter(problem, a, b, p, interrupt)
             })?;
         }
-        let Some((a, b)) = self.beside_plateau((a, level_a), (b, level_b))? else {
-            return Ok(());
-        };
-        self.optima(&a, &b, CORNER_HALVINGS)
-    }
-
-    /// Locates optima between two points, on both sides of corners, at which contacts change their state: there may be two between
-    /// points with slopes of one sign.
-    fn optima(&mut self, (a, level_a): &AtLevel, (b, level_b): &AtLevel, halvings: usize) -> Result<()> {
-        let interrupt = self.interrupt;
-        let highest = *level_a.max(level_b);
-        if halvings > 0 && has_corner(a, b) {
-            self.followed.select(highest)?;
-            let level = self.followed.resolution();
-            let [a, b] = [
-                (self.followed.transfer(a, *level_a)?, level),
-                (self.followed.transfer(b, *level_b)?, level),
-            ];
-            let mut locator = Locator::new(a.0.unknowns().len(), self.settings)?;
-            if let Some(middle) = locator.between(self.followed.problem(), (&a.0, &b.0), 0.5, interrupt)? {
-                let middle = (middle, level);
-                self.optima(&a, &middle, halvings - 1)?;
-                return self.optima(&middle, &b, halvings - 1);
-            }
-        }
-        for is_maximum in [true, false] {
-            let (sensed_a, sensed_b) = (sensed(a, is_maximum)?, sensed(b, is_maximum)?);
-            if !SpecialPoint::Peak.between(&sensed_a, &sensed_b) {
-                continue;
-            }
-            self.followed.select(highest)?;
-            let beside = Beside::Optimum { is_maximum };
-            self.find(
-                beside,
-                (&sensed_a, *level_a),
-                (&sensed_b, *level_b),
-                |locator, problem, a, b| locator.locate(problem, SpecialPoint::Peak, a, b, interrupt),
-            )?;
-        }
-        Ok(())
-    }
-
-    /// The part between two neighbours in which an optimum is sought; `None`: there is none.
-    ///
-    /// While all contacts stick, or none acts, a result does not depend on their limits. At an end on such a plateau the slope
-    /// is zero, so that its sign says nothing of an optimum between the edge of the plateau and the other end. Halving finds the
-    /// edge, or a point before it whose slope has the other sign.
-    fn beside_plateau(
-        &mut self,
-        (a, level_a): (&Point, usize),
-        (b, level_b): (&Point, usize),
-    ) -> Result<Option<(AtLevel, AtLevel)>> {
-        let range = b.parameter() - a.parameter();
-        let flat_at = [a, b].map(|end| is_flat(end, range));
-        if flat_at[0] == flat_at[1] {
-            return Ok(match flat_at[0] {
-                true => None,
-                false => Some(((a.try_clone()?, level_a), (b.try_clone()?, level_b))),
-            });
-        }
-        self.followed.select(level_a.max(level_b))?;
-        let level = self.followed.resolution();
-        let (a, b) = (self.followed.transfer(a, level_a)?, self.followed.transfer(b, level_b)?);
-        let mut locator = Locator::new(a.unknowns().len(), self.settings)?;
-        let (mut on, mut off, mut inner) = match flat_at[0] {
-            true => (0.0, 1.0, b.try_clone()?),
-            false => (1.0, 0.0, a.try_clone()?),
-        };
-        let slope = |point: &Point| SpecialPoint::Peak.function(point, 1.0);
-        let sense = slope(&inner);
-        for _ in 0..PLATEAU_HALVINGS {
-            let share = 0.5 * (on + off);
-            let Some(point) = locator.between(self.followed.problem(), (&a, &b), share, self.interrupt)? else {
-                break;
-            };
-            if is_flat(&point, range) {
-                on = share;
-            } else if slope(&point) * sense < 0.0 {
-                let (point, inner) = ((point, level), (inner, level));
-                return Ok(Some(if flat_at[0] { (point, inner) } else { (inner, point) }));
-            } else {
-                (off, inner) = (share, point);
-            }
-        }
-        Ok(None)
+        self.find_optima(a, level_a, b, level_b)
     }
 
     /// Searches for a point between two neighbours, with the harmonics that this point requires.
-    fn find(
+    pub(super) fn find(
         &mut self,
         beside: Beside,
         (a, level_a): (&Point, usize),
@@ -416,35 +314,4 @@ impl<'a> CurveRecorder<'a> {
             newton_iterations: point.iterations,
         })
     }
-}
-
-/// Whether the result has a corner between two points, or changes too much to tell: its change is that of the mean slope but for
-/// the third derivative where it is smooth. `false` beside a turn, where the slope over the parameter has no bound.
-fn has_corner(a: &Point, b: &Point) -> bool {
-    let range = b.parameter() - a.parameter();
-    let change_by = |point: &Point| {
-        let rate = point.tangent.last().copied().unwrap_or(0.0);
-        SpecialPoint::Peak.function(point, 1.0) * range / rate
-    };
-    let (from_a, from_b) = (change_by(a), change_by(b));
-    let change = b.amplitude.norm() - a.amplitude.norm();
-    (change - 0.5 * (from_a + from_b)).abs() > CORNER * from_a.abs().max(from_b.abs())
-}
-
-/// Whether a result over a range as long as this one would not change but by rounding, if its slope stayed that of a point.
-fn is_flat(point: &Point, range: f64) -> bool {
-    let rate = point.tangent.last().copied().unwrap_or(0.0);
-    let change = SpecialPoint::Peak.function(point, 1.0) * range;
-    change.abs() <= PLATEAU_SLOPE * point.amplitude.norm() * rate.abs()
-}
-
-/// A point whose observed number is its result or, for a minimum, the reciprocal.
-fn sensed(point: &Point, is_maximum: bool) -> Result<Point> {
-    let mut copy = point.try_clone()?;
-    if !is_maximum {
-        let value = point.amplitude.re;
-        copy.amplitude = Complex64::from(1.0 / value);
-        copy.slope = Complex64::from(-point.slope.re / (value * value));
-    }
-    Ok(copy)
 }

@@ -21,7 +21,7 @@ pub(crate) const FAR: f64 = 0.2;
 
 /// Distance of a motion in time from a point, over that of the begin of its search, up to which it is taken for the point's own.
 /// Kind: tuned; measured on: motions behind folds of stops and tables, 3,300 points.
-const FURTHER: f64 = 2.0;
+const OWN_MOTION_WITHIN: f64 = 2.0;
 
 /// Largest difference of opposite sectors, relative to the motion, of a motion that is odd.
 /// Kind: rounding.
@@ -151,8 +151,7 @@ pub(crate) fn perturbed(
             ..TimeOptions::default()
         };
         let start = state.try_clone()?;
-        let in_system = (&mut system, &mut event_loop);
-        let found = steady_near(in_system, subject, motion, (&in_time, hooks), &start)?;
+        let found = steady_near(&mut system, &mut event_loop, subject, motion, &in_time, hooks, &start)?;
         let Some(steady) = found else {
             return fail!(
                 NoConvergence,
@@ -205,12 +204,14 @@ pub(crate) fn perturbed(
 /// neighbouring point first, then from the harmonics as they are.
 ///
 /// Beside a fold two motions are near a point, and the difference of a neighbour before the fold leads to the other one. A motion
-/// further from the point than its begin was, by [`FURTHER`], is compared with the one that the harmonics lead to: the nearer one counts.
+/// further from the point than its begin was, by [`OWN_MOTION_WITHIN`], is compared with the one that the harmonics lead to: the nearer one counts.
 fn steady_near(
-    (system, event_loop): (&mut System<'_>, &mut EventLoop),
+    system: &mut System<'_>,
+    event_loop: &mut EventLoop,
     subject: &Subject<'_>,
     motion: &Motion<'_>,
-    (options, hooks): (&TimeOptions<'_>, &mut Hooks<'_>),
+    options: &TimeOptions<'_>,
+    hooks: &mut Hooks<'_>,
     start: &State,
 ) -> Result<Option<Steady>> {
     let mut first = None;
@@ -219,7 +220,7 @@ fn steady_near(
         first = shoot((system, event_loop), subject, motion, (options, hooks), begin)?;
         if let Some(steady) = &first
             && (steady.status == Status::StoppedByCaller
-                || start.distance(&steady.state, motion.omega) <= FURTHER * expected)
+                || start.distance(&steady.state, motion.omega) <= OWN_MOTION_WITHIN * expected)
         {
             return Ok(first);
         }

@@ -1,0 +1,151 @@
+//! Optima of a result between two points of its curve: beside plateaus, on which contacts stick, and on both sides of corners, at
+//! which they change their state.
+
+use crate::analysis::over_parameter::parameter_curve::{Beside, CurveRecorder};
+use crate::continuation::Point;
+use crate::continuation::special_points::{Locator, SpecialPoint};
+use crate::error::Result;
+use crate::harmonics::discretised::Discretised;
+use num_complex::Complex64;
+
+/// Change of a result over a step by its slope at one end, relative to it, that is none.
+/// Kind: rounding.
+const PLATEAU_SLOPE: f64 = 1e-10;
+
+/// Halvings between a plateau and the other end of a step: an optimum within a thousandth of the step from the edge may be missed.
+/// Kind: cap.
+const PLATEAU_HALVINGS: usize = 10;
+
+/// Departure of a change from that of the mean slope, over that of the larger slope, that shows a corner; and halvings of a step
+/// in which corners are sought.
+/// Kind: tuned; measured on: 800 responses of one slider over its limit.
+const CORNER: f64 = 0.05;
+const CORNER_HALVINGS: usize = 6;
+
+/// Two points of the curve with the harmonics of one level.
+struct Stretch {
+    a: Point,
+    b: Point,
+    level: usize,
+}
+
+impl Stretch {
+    fn copy(&self, a: &Point, b: &Point) -> Result<Self> {
+        Ok(Self {
+            a: a.try_clone()?,
+            b: b.try_clone()?,
+            level: self.level,
+        })
+    }
+}
+
+impl CurveRecorder<'_> {
+    /// Locates the optima between two neighbours, each with its level of harmonics, without a turn between them.
+    pub(super) fn find_optima(&mut self, a: &Point, level_a: usize, b: &Point, level_b: usize) -> Result<()> {
+        self.followed.select(level_a.max(level_b))?;
+        let whole = Stretch {
+            a: self.followed.transfer(a, level_a)?,
+            b: self.followed.transfer(b, level_b)?,
+            level: self.followed.resolution(),
+        };
+        match self.beside_plateau(whole)? {
+            Some(stretch) => self.optima(&stretch, CORNER_HALVINGS),
+            None => Ok(()),
+        }
+    }
+
+    /// The part of a stretch in which an optimum is sought; `None`: there is none.
+    ///
+    /// While all contacts stick, or none acts, a result does not depend on their limits. At an end on such a plateau the slope
+    /// is zero, so that its sign says nothing of an optimum between the edge of the plateau and the other end. Halving finds the
+    /// edge, or a point before it whose slope has the other sign.
+    fn beside_plateau(&mut self, whole: Stretch) -> Result<Option<Stretch>> {
+        let (a, b) = (&whole.a, &whole.b);
+        let range = b.parameter() - a.parameter();
+        let flat_at = [a, b].map(|end| is_flat(end, range));
+        if flat_at[0] == flat_at[1] {
+            return Ok((!flat_at[0]).then_some(whole));
+        }
+        let slope = |point: &Point| SpecialPoint::Peak.function(point, 1.0);
+        let mut locator = Locator::new(a.unknowns().len(), self.settings)?;
+        let (mut flat, mut steep, mut inner) = match flat_at[0] {
+            true => (0.0, 1.0, b.try_clone()?),
+            false => (1.0, 0.0, a.try_clone()?),
+        };
+        let sense = slope(&inner);
+        for _ in 0..PLATEAU_HALVINGS {
+            let share = 0.5 * (flat + steep);
+            let Some(point) = locator.between(self.followed.problem(), (a, b), share, self.interrupt)? else {
+                break;
+            };
+            if is_flat(&point, range) {
+                flat = share;
+            } else if slope(&point) * sense < 0.0 {
+                return match flat_at[0] {
+                    true => whole.copy(&point, &inner),
+                    false => whole.copy(&inner, &point),
+                }
+                .map(Some);
+            } else {
+                (steep, inner) = (share, point);
+            }
+        }
+        Ok(None)
+    }
+
+    /// Locates optima on both sides of corners: there may be two between points with slopes of one sign.
+    fn optima(&mut self, stretch: &Stretch, halvings: usize) -> Result<()> {
+        let (a, b, level, interrupt) = (&stretch.a, &stretch.b, stretch.level, self.interrupt);
+        if halvings > 0 && has_corner(a, b) {
+            self.followed.select(level)?;
+            let mut locator = Locator::new(a.unknowns().len(), self.settings)?;
+            if let Some(middle) = locator.between(self.followed.problem(), (a, b), 0.5, interrupt)? {
+                self.optima(&stretch.copy(a, &middle)?, halvings - 1)?;
+                return self.optima(&stretch.copy(&middle, b)?, halvings - 1);
+            }
+        }
+        for is_maximum in [true, false] {
+            let (a, b) = (sensed(a, is_maximum)?, sensed(b, is_maximum)?);
+            if !SpecialPoint::Peak.between(&a, &b) {
+                continue;
+            }
+            self.followed.select(level)?;
+            let beside = Beside::Optimum { is_maximum };
+            self.find(beside, (&a, level), (&b, level), |locator, problem, a, b| {
+                locator.locate(problem, SpecialPoint::Peak, a, b, interrupt)
+            })?;
+        }
+        Ok(())
+    }
+}
+
+/// Whether the result has a corner between two points, or changes too much to tell: its change is that of the mean slope but for
+/// the third derivative where it is smooth. `false` beside a turn, where the slope over the parameter has no bound.
+fn has_corner(a: &Point, b: &Point) -> bool {
+    let range = b.parameter() - a.parameter();
+    let change_by = |point: &Point| {
+        let rate = point.tangent.last().copied().unwrap_or(0.0);
+        SpecialPoint::Peak.function(point, 1.0) * range / rate
+    };
+    let (from_a, from_b) = (change_by(a), change_by(b));
+    let change = b.amplitude.norm() - a.amplitude.norm();
+    (change - 0.5 * (from_a + from_b)).abs() > CORNER * from_a.abs().max(from_b.abs())
+}
+
+/// Whether a result over a range as long as this one would not change but by rounding, if its slope stayed that of a point.
+fn is_flat(point: &Point, range: f64) -> bool {
+    let rate = point.tangent.last().copied().unwrap_or(0.0);
+    let change = SpecialPoint::Peak.function(point, 1.0) * range;
+    change.abs() <= PLATEAU_SLOPE * point.amplitude.norm() * rate.abs()
+}
+
+/// A point whose observed number is its result or, for a minimum, the reciprocal.
+fn sensed(point: &Point, is_maximum: bool) -> Result<Point> {
+    let mut copy = point.try_clone()?;
+    if !is_maximum {
+        let value = point.amplitude.re;
+        copy.amplitude = Complex64::from(1.0 / value);
+        copy.slope = Complex64::from(-point.slope.re / (value * value));
+    }
+    Ok(copy)
+}
