@@ -68,9 +68,10 @@ impl CurveRecorder<'_> {
         }
         let slope = |point: &Point| SpecialPoint::Peak.function(point, 1.0);
         let mut locator = Locator::new(a.unknowns().len(), self.settings)?;
-        let (mut flat, mut steep, mut inner) = match flat_at[0] {
-            true => (0.0, 1.0, b.try_clone()?),
-            false => (1.0, 0.0, a.try_clone()?),
+        let (mut flat, mut steep, mut inner) = if flat_at[0] {
+            (0.0, 1.0, b.try_clone()?)
+        } else {
+            (1.0, 0.0, a.try_clone()?)
         };
         let sense = slope(&inner);
         for _ in 0..PLATEAU_HALVINGS {
@@ -81,11 +82,8 @@ impl CurveRecorder<'_> {
             if is_flat(&point, range) {
                 flat = share;
             } else if slope(&point) * sense < 0.0 {
-                return match flat_at[0] {
-                    true => whole.copy(&point, &inner),
-                    false => whole.copy(&inner, &point),
-                }
-                .map(Some);
+                let ends = if flat_at[0] { [&point, &inner] } else { [&inner, &point] };
+                return whole.copy(ends[0], ends[1]).map(Some);
             } else {
                 (steep, inner) = (share, point);
             }
