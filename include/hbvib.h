@@ -4987,10 +4987,11 @@ hbvib_status hbvib_band_info_init(hbvib_band_info *i, size_t size_of_i);
 
 /// The band of a stored point of a forced response: the least and the largest result over all
 /// places of the sliders that stick through the period, and the states that attain them. With one
-/// free slider all states from one limit of its friction to the other are followed, with every
-/// extremum between. With several, a search from each start goes to an extremum; the bounds are
-/// attained ones, beyond which others may lie. Where every contact is linear at the point, states
-/// with sliders at the corners of their limits are tried, at which others may slip or open.
+/// free slider all states that are joined to that of the point, from one limit of its friction to
+/// the other, are followed, with every extremum between. With several, a search from each start
+/// goes to an extremum; the bounds are attained ones, beyond which others may lie. Where every
+/// contact is linear at the point, states with sliders at the corners of their limits are tried, at
+/// which others may slip or open.
 /// The harmonics are those of the point. Where a tolerance has chosen these, the ends and the
 /// limits of one free slider are searched again with twice as many, until their results change by
 /// less than the tolerance of `solver`.

@@ -30,8 +30,8 @@ const BAND_MOST_STARTS: usize = 1000;
 /// The harmonics are those of the point. Where a tolerance has chosen these, the ends and the limits of one free slider are searched
 /// again with twice as many, until their results change by less than the tolerance of `solver`.
 ///
-/// With one free slider all states from one limit of its friction to the other are followed, with every extremum between them. With
-/// several, a search from each start goes to an extremum: the bounds are attained ones, beyond which others may lie. Where every contact
+/// With one free slider all states that are joined to that of the point, from one limit of its friction to the other, are followed, with
+/// every extremum between them. With several, a search from each start goes to an extremum: the bounds are attained ones, beyond which others may lie. Where every contact
 /// is linear at the point, states with sliders at the corners of their limits are tried, at which another contact may slip or open.
 ///
 /// # Errors
