@@ -22,53 +22,34 @@ const PLATEAU_HALVINGS: usize = 10;
 const CORNER: f64 = 0.05;
 const CORNER_HALVINGS: usize = 6;
 
-/// Two points of the curve with the harmonics of one level.
-struct Stretch {
-    a: Point,
-    b: Point,
-    level: usize,
-}
-
-impl Stretch {
-    fn copy(&self, a: &Point, b: &Point) -> Result<Self> {
-        Ok(Self {
-            a: a.try_clone()?,
-            b: b.try_clone()?,
-            level: self.level,
-        })
-    }
-}
-
 impl CurveRecorder<'_> {
     /// Locates the optima between two neighbours, each with its level of harmonics, without a turn between them.
     pub(super) fn find_optima(&mut self, a: &Point, level_a: usize, b: &Point, level_b: usize) -> Result<()> {
-        self.followed.select(level_a.max(level_b))?;
-        let whole = Stretch {
-            a: self.followed.transfer(a, level_a)?,
-            b: self.followed.transfer(b, level_b)?,
-            level: self.followed.resolution(),
-        };
-        match self.beside_plateau(whole)? {
-            Some(stretch) => self.optima(&stretch, CORNER_HALVINGS),
+        let level = level_a.max(level_b);
+        self.followed.select(level)?;
+        let ends = [self.followed.transfer(a, level_a)?, self.followed.transfer(b, level_b)?];
+        match self.beside_plateau(ends)? {
+            Some([a, b]) => self.optima(&a, &b, level, CORNER_HALVINGS),
             None => Ok(()),
         }
     }
 
-    /// The part of a stretch in which an optimum is sought; `None`: there is none.
+    /// The part between two points in which an optimum is sought; `None`: there is none.
     ///
     /// While all contacts stick, or none acts, a result does not depend on their limits. At an end on such a plateau the slope
     /// is zero, so that its sign says nothing of an optimum between the edge of the plateau and the other end. Halving finds the
     /// edge, or a point before it whose slope has the other sign.
-    fn beside_plateau(&mut self, whole: Stretch) -> Result<Option<Stretch>> {
-        let (a, b) = (&whole.a, &whole.b);
+    fn beside_plateau(&mut self, ends: [Point; 2]) -> Result<Option<[Point; 2]>> {
+        let [a, b] = &ends;
         let range = b.parameter() - a.parameter();
-        let flat_at = [a, b].map(|end| is_flat(end, range));
-        if flat_at[0] == flat_at[1] {
-            return Ok((!flat_at[0]).then_some(whole));
+        let is_flat = |point: &Point| change_by_slope(point, range).abs() <= PLATEAU_SLOPE * point.amplitude.norm();
+        let [flat_a, flat_b] = [is_flat(a), is_flat(b)];
+        if flat_a == flat_b {
+            return Ok((!flat_a).then_some(ends));
         }
         let slope = |point: &Point| SpecialPoint::Peak.function(point, 1.0);
         let mut locator = Locator::new(a.unknowns().len(), self.settings)?;
-        let (mut flat, mut steep, mut inner) = if flat_at[0] {
+        let (mut flat, mut steep, mut inner) = if flat_a {
             (0.0, 1.0, b.try_clone()?)
         } else {
             (1.0, 0.0, a.try_clone()?)
@@ -79,11 +60,10 @@ impl CurveRecorder<'_> {
             let Some(point) = locator.between(self.followed.problem(), (a, b), share, self.interrupt)? else {
                 break;
             };
-            if is_flat(&point, range) {
+            if is_flat(&point) {
                 flat = share;
             } else if slope(&point) * sense < 0.0 {
-                let ends = if flat_at[0] { [&point, &inner] } else { [&inner, &point] };
-                return whole.copy(ends[0], ends[1]).map(Some);
+                return Ok(Some(if flat_a { [point, inner] } else { [inner, point] }));
             } else {
                 (steep, inner) = (share, point);
             }
@@ -91,50 +71,45 @@ impl CurveRecorder<'_> {
         Ok(None)
     }
 
-    /// Locates optima on both sides of corners: there may be two between points with slopes of one sign.
-    fn optima(&mut self, stretch: &Stretch, halvings: usize) -> Result<()> {
-        let (a, b, level, interrupt) = (&stretch.a, &stretch.b, stretch.level, self.interrupt);
+    /// Locates optima between two points of a level, on both sides of corners: there may be two between points with slopes of one sign.
+    fn optima(&mut self, a: &Point, b: &Point, level: usize, halvings: usize) -> Result<()> {
+        let interrupt = self.interrupt;
+        // The search for another optimum may have raised the level.
+        self.followed.select(level)?;
         if halvings > 0 && has_corner(a, b) {
-            self.followed.select(level)?;
             let mut locator = Locator::new(a.unknowns().len(), self.settings)?;
             if let Some(middle) = locator.between(self.followed.problem(), (a, b), 0.5, interrupt)? {
-                self.optima(&stretch.copy(a, &middle)?, halvings - 1)?;
-                return self.optima(&stretch.copy(&middle, b)?, halvings - 1);
+                self.optima(a, &middle, level, halvings - 1)?;
+                return self.optima(&middle, b, level, halvings - 1);
             }
         }
         for is_maximum in [true, false] {
             let (a, b) = (sensed(a, is_maximum)?, sensed(b, is_maximum)?);
-            if !SpecialPoint::Peak.between(&a, &b) {
-                continue;
+            // At most one kind: the level is still the one selected.
+            if SpecialPoint::Peak.between(&a, &b) {
+                let beside = Beside::Optimum { is_maximum };
+                self.find(beside, (&a, level), (&b, level), |locator, problem, a, b| {
+                    locator.locate(problem, SpecialPoint::Peak, a, b, interrupt)
+                })?;
             }
-            self.followed.select(level)?;
-            let beside = Beside::Optimum { is_maximum };
-            self.find(beside, (&a, level), (&b, level), |locator, problem, a, b| {
-                locator.locate(problem, SpecialPoint::Peak, a, b, interrupt)
-            })?;
         }
         Ok(())
     }
 }
 
-/// Whether the result has a corner between two points, or changes too much to tell: its change is that of the mean slope but for
-/// the third derivative where it is smooth. `false` beside a turn, where the slope over the parameter has no bound.
-fn has_corner(a: &Point, b: &Point) -> bool {
-    let range = b.parameter() - a.parameter();
-    let change_by = |point: &Point| {
-        let rate = point.tangent.last().copied().unwrap_or(0.0);
-        SpecialPoint::Peak.function(point, 1.0) * range / rate
-    };
-    let (from_a, from_b) = (change_by(a), change_by(b));
-    let change = b.amplitude.norm() - a.amplitude.norm();
-    (change - 0.5 * (from_a + from_b)).abs() > CORNER * from_a.abs().max(from_b.abs())
+/// Change of a result over a range of the parameter, if its slope stayed that of a point; infinite at a turn.
+fn change_by_slope(point: &Point, range: f64) -> f64 {
+    let rate = point.tangent.last().copied().unwrap_or(0.0);
+    SpecialPoint::Peak.function(point, 1.0) * range / rate
 }
 
-/// Whether a result over a range as long as this one would not change but by rounding, if its slope stayed that of a point.
-fn is_flat(point: &Point, range: f64) -> bool {
-    let rate = point.tangent.last().copied().unwrap_or(0.0);
-    let change = SpecialPoint::Peak.function(point, 1.0) * range;
-    change.abs() <= PLATEAU_SLOPE * point.amplitude.norm() * rate.abs()
+/// Whether the result has a corner between two points, or changes too much to tell: its change is that of the mean slope but for
+/// the third derivative where it is smooth. `false` beside a turn.
+fn has_corner(a: &Point, b: &Point) -> bool {
+    let range = b.parameter() - a.parameter();
+    let (from_a, from_b) = (change_by_slope(a, range), change_by_slope(b, range));
+    let change = b.amplitude.norm() - a.amplitude.norm();
+    (change - 0.5 * (from_a + from_b)).abs() > CORNER * from_a.abs().max(from_b.abs())
 }
 
 /// A point whose observed number is its result or, for a minimum, the reciprocal.

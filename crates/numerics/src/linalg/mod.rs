@@ -11,6 +11,6 @@ pub mod sparse_storage;
 mod vectors;
 
 pub use vectors::{
-    COPIED_UP_TO, SAFE_SQUARES, add_outer_products, add_outer_products_to, add_product, dot, expand, first_product,
-    inner, inner_in_parts, norm, power_of_two, remove, transposed_products,
+    COPIED_UP_TO, ENOUGH_LEFT, SAFE_SQUARES, add_outer_products, add_outer_products_to, add_product, dot, expand,
+    first_product, inner, inner_in_parts, norm, power_of_two, remove, transposed_products,
 };

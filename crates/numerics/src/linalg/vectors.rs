@@ -28,6 +28,11 @@ pub fn inner_in_parts(a: &[Complex64], b: &[Complex64]) -> Complex64 {
     sums.iter().sum::<Complex64>() + rest
 }
 
+/// Share of a vector that is left after its components are removed, from which that need not be repeated: once leaves rounding of the
+/// size of the vector before, relative to it after (Giraud & Langou 2002, doi:10.1093/imanum/22.4.521).
+/// Kind: rounding.
+pub const ENOUGH_LEFT: f64 = 0.5;
+
 /// v ← v − part q.
 #[inline]
 pub fn remove(v: &mut [Complex64], q: &[Complex64], part: Complex64) {

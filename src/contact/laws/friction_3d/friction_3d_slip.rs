@@ -54,7 +54,8 @@ pub(crate) struct Solved {
     pub by_start: f64,
 }
 
-/// Slip over a panel of length `h` from `angle`, where it turns at the rate `rate` and by `turned` for a speed 1 across; `None` where Newton's method does not converge.
+/// Slip over a panel of length `h` from `angle`, where it turns at the rate `rate` and by `turned` for a speed 1 across; `None` where
+/// Newton's method does not converge.
 pub(crate) fn solve(
     tables: &RadauTables,
     lu: &mut Lu<f64>,

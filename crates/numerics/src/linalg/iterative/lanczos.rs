@@ -13,7 +13,7 @@ use crate::linalg::dense::eigen::{self, Pairs};
 use crate::linalg::dense::tridiagonal;
 use crate::linalg::factors::shifted_inverse::{BelowAll, Inverse, Place, below_all, definite_inverse};
 use crate::linalg::sparse_storage::sparse::Csc;
-use crate::linalg::{inner, inner_in_parts, remove};
+use crate::linalg::{ENOUGH_LEFT, inner, inner_in_parts, remove};
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
@@ -30,10 +30,6 @@ const VECTOR: f64 = 1e-8;
 /// Share of a vector outside the space of the others below which it is rounding only.
 /// Kind: rounding.
 const LANCZOS_EXHAUSTED: f64 = 1e-12;
-
-/// Share of the square of a vector that is left after its components are removed, from which that need not be repeated.
-/// Kind: rounding.
-const ENOUGH_LEFT: f64 = 0.25;
 
 /// Value of the operator below zero, relative to the largest, that is no rounding.
 /// Kind: rounding.
@@ -472,21 +468,21 @@ impl LanczosSearch<'_> {
     /// Removes from v its components along the basis and along the vectors found, again where little of it is left: once leaves rounding
     /// of the size of v before, relative to v after (Giraud & Langou 2002, doi:10.1093/imanum/22.4.521).
     fn orthogonalise(&self, v: &mut [Complex64], run: &Run) -> Result<()> {
-        let size = |v: &[Complex64]| -> Result<f64> { Ok(inner_in_parts(v, &self.times_mass(v)?).re.max(0.0)) };
+        let square = |v: &[Complex64]| -> Result<f64> { Ok(inner_in_parts(v, &self.times_mass(v)?).re.max(0.0)) };
         // By Lanczos' recurrence the components along the last two are all that is not rounding.
         let last = run.basis.len().saturating_sub(2);
         for (q, mq) in run.basis[last..].iter().zip(&run.weighted[last..]) {
             remove(v, q, inner_in_parts(mq, v));
         }
         for _ in 0..2 {
-            let before = size(v)?;
+            let before = square(v)?;
             for (q, mq) in run.basis.iter().zip(&run.weighted) {
                 remove(v, q, inner_in_parts(mq, v));
             }
             for (_, q, mq) in &self.found {
                 remove(v, q, inner_in_parts(mq, v));
             }
-            if size(v)? >= ENOUGH_LEFT * before {
+            if square(v)? >= ENOUGH_LEFT.powi(2) * before {
                 break;
             }
         }

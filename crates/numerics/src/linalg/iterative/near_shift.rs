@@ -14,7 +14,7 @@ use crate::linalg::dense::general_eigen;
 use crate::linalg::factors::factor::Factor;
 use crate::linalg::iterative::lanczos;
 use crate::linalg::sparse_storage::sparse::{Csc, Form};
-use crate::linalg::{inner, inner_in_parts, remove};
+use crate::linalg::{ENOUGH_LEFT, inner, inner_in_parts, remove};
 use num_complex::Complex64;
 
 /// Residual of an eigenvalue of the operator, relative to it, that counts as converged.
@@ -48,10 +48,6 @@ const NEAR_SHIFT_ALIKE: f64 = 1e-9;
 /// Error of an eigenvalue of the operator, relative to it, from which on those farther away do not count as found.
 /// Kind: rounding.
 const POOR: f64 = 1e-7;
-
-/// Share of a vector that is left after its components are removed, from which that need not be repeated.
-/// Kind: rounding.
-const NEAR_SHIFT_LEFT: f64 = 0.5;
 
 const CONTEXT: &str = "the damped modes";
 
@@ -376,7 +372,7 @@ impl<'a> NearShift<'a> {
                 remove(v, q, part);
                 *h += part;
             }
-            if size(v) >= NEAR_SHIFT_LEFT * before {
+            if size(v) >= ENOUGH_LEFT * before {
                 break;
             }
         }
