@@ -68,13 +68,21 @@ python_is_there() {
 # The crates of all platforms: a build takes those of its own, but a new project of a user is resolved with all.
 cargo fetch --quiet
 
+# Programs of tests report a full disk in words of their own, or in none.
+full_disk() {
+    for folder in . "${TMPDIR:-/tmp}"; do
+        free=$(df -Pk "$folder" | awk 'NR == 2 { print int($4 / 1024) }')
+        [ "$free" -ge 1000 ] || echo "tests/run.sh: only $free MB are free for $folder, which may be why a test fails" >&2
+    done
+}
+
 # Does a step, and lists at the end how long each took.
 times=""
 step() { # name, command
     name=$1
     shift
     began=$(date +%s)
-    "$@"
+    "$@" || { code=$?; full_disk; exit $code; }
     times="$times$(printf '%6d s  %s' $(($(date +%s) - began)) "$name")
 "
 }
