@@ -4253,7 +4253,8 @@ typedef enum {
 
 /// A parameter of a model. Fill it by hbvib_parameter_init. Rayleigh damping and the loss factor
 /// follow the mass and stiffness matrices, as where a matrix is set anew; the factor of the damping
-/// acts on Rayleigh and modal damping as well.
+/// acts on Rayleigh and modal damping as well. Where a list has a factor s and a direction E of one
+/// matrix A, the values make s A + d E of it, in any order of the list.
 typedef struct {
   /// Bytes of this struct as the caller knows it.
   uint32_t struct_size;
@@ -4575,9 +4576,10 @@ hbvib_status hbvib_batch_options_init(hbvib_batch_options *o, size_t size_of_o);
 
 /// Finds the highest peak of the response of each design within a range of frequency. A design is
 /// the model with values of its parameters: constants of contacts and the speed are set, factors
-/// multiply, and directions are added times the value. Each design is solved by itself, so that its
-/// result depends on no other, on their order or on the number of threads. Designs that change
-/// constants of contacts and forces alone share the structure of the model.
+/// multiply, and directions are added times the value, after the factors wherever they stand in the
+/// list. Each design is solved by itself, so that its result depends on no other, on their order or
+/// on the number of threads. Designs that change constants of contacts and forces alone share the
+/// structure of the model.
 ///
 /// model       stays as it is.
 /// solver      options; NULL: the defaults. A fixed response_dof makes peaks comparable.

@@ -1,6 +1,7 @@
 """Columns of measured numbers from MATLAB, NumPy and CSV files, and deviations from coherence."""
 from __future__ import annotations
 
+import csv
 import os
 from typing import TYPE_CHECKING, Any, Union
 
@@ -39,13 +40,14 @@ def read_columns(path: Any) -> dict[str, Union[FloatArray, ComplexArray]]:
         with np.load(name) as file:
             found = dict(file)
     else:
-        with open(name, encoding="utf-8") as text:
-            lines = [line.strip() for line in text if line.strip() and not line.startswith("#")]
+        # Spreadsheets begin a file with a mark of its encoding, and quote words.
+        with open(name, encoding="utf-8-sig") as text:
+            lines = list(csv.reader((line for line in text if line.strip() and not line.startswith("#")), skipinitialspace=True))
         if not lines:
             raise ValueError(f"{name}: holds no columns")
-        names = [word.strip() for word in lines[0].split(",")]
+        names = [word.strip() for word in lines[0]]
         try:
-            rows = np.array([[float(word) for word in line.split(",")] for line in lines[1:]]).reshape(-1, len(names))
+            rows = np.array([[float(word) for word in line] for line in lines[1:]]).reshape(-1, len(names))
         except ValueError as error:
             raise ValueError(f"{name}: {error}; needs {len(names)} numbers in each line after the names") from None
         found = dict(zip(names, rows.T))

@@ -4,6 +4,7 @@ use crate::error::{Result, fail};
 use crate::model::Model;
 use crate::model::matrices::speed::Speed;
 use crate::sensitivity::parameter::Parameter;
+use num_complex::Complex64;
 
 impl Parameter<'_> {
     /// Gives the parameter a value: constants of contacts and the speed are set, factors multiply, and directions are
@@ -35,7 +36,7 @@ impl Parameter<'_> {
         }
     }
 
-    /// Whether two parameters set one constant or the speed both; factors and directions act one after the other.
+    /// Whether two parameters set one constant or the speed both; factors of one matrix multiply, and directions add.
     pub(crate) fn sets_the_same_as(&self, other: &Self) -> bool {
         match (self, other) {
             (
@@ -62,14 +63,37 @@ impl Parameter<'_> {
         }
     }
 
+    /// Whether this is a factor on a matrix.
+    pub(crate) fn is_factor(&self) -> bool {
+        matches!(self, Self::Factor { .. })
+    }
+
+    /// Whether this is a direction in the matrix of which `factor` is a factor.
+    pub(crate) fn is_direction_beside(&self, factor: &Self) -> bool {
+        matches!((self, factor), (Self::Direction { which: a, .. }, Self::Factor { which: b }) if a == b)
+    }
+
     /// Whether a change of the parameter leaves the matrices of the structure as they are.
     pub(crate) fn keeps_structure(&self) -> bool {
         matches!(self, Self::Force | Self::Contact { .. })
     }
 }
 
-/// A copy of a model with values of its parameters, applied in their order. It uses the bases that the model keeps,
-/// and stores further ones in a list of its own.
+/// Derivative by the value of the k-th parameter of a design, from the derivatives `of` by the parameters of the design as it is. A
+/// matrix sA + Σ dE has the derivative A by s, which is the whole without the directions, over s.
+pub(crate) fn by_value(parameters: &[Parameter<'_>], values: &[f64], of: &[Complex64], k: usize) -> Complex64 {
+    let factor = &parameters[k];
+    let mut whole = of[k];
+    for ((other, value), slope) in parameters.iter().zip(values).zip(of) {
+        if other.is_direction_beside(factor) {
+            whole -= value * slope;
+        }
+    }
+    whole * factor.relative_at(values[k])
+}
+
+/// A copy of a model with values of its parameters: factors first, so that directions mean the same in any order of the list. It
+/// uses the bases that the model keeps, and stores further ones in a list of its own.
 ///
 /// # Errors
 /// `Dimension` for another number of values; those of [`Parameter::apply`], naming the value.
@@ -90,10 +114,14 @@ fn with_values(mut copy: Model, parameters: &[Parameter<'_>], values: &[f64]) ->
     if values.len() != parameters.len() {
         return fail!(Dimension, "{} values for {} parameters", values.len(), parameters.len());
     }
-    for (i, (parameter, &value)) in parameters.iter().zip(values).enumerate() {
-        parameter
-            .apply(value, &mut copy)
-            .map_err(|e| e.at(format_args!("value {i}")))?;
+    for are_factors in [true, false] {
+        for (i, (parameter, &value)) in parameters.iter().zip(values).enumerate() {
+            if parameter.is_factor() == are_factors {
+                parameter
+                    .apply(value, &mut copy)
+                    .map_err(|e| e.at(format_args!("value {i}")))?;
+            }
+        }
     }
     Ok(copy)
 }

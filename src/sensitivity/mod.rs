@@ -34,7 +34,7 @@ mod tracked_response;
 
 pub(crate) use adjoint::Adjoint;
 pub(crate) use central_differences::central_differences;
-pub(crate) use design::{design, design_with_bases};
+pub(crate) use design::{by_value, design, design_with_bases};
 pub(crate) use forced_point::ForcedPoint;
 pub(crate) use friction_work::work_at_fixed_motion;
 pub(crate) use mode_point::{ModePointAdjoint, ModeQuantity};

@@ -28,7 +28,8 @@ pub enum Parameter<'a> {
         direction: MatrixView<'a>,
     },
     /// A factor, with present value 1, on the whole mass, damping or stiffness matrix with its couplings. The factor
-    /// of the damping acts on Rayleigh and modal damping as well.
+    /// of the damping acts on Rayleigh and modal damping as well. With a direction E of the same matrix A in one list the values
+    /// make sA + dE, in any order of the list.
     Factor {
         /// Matrix that is changed: mass, damping or stiffness.
         which: MatrixKind,

@@ -11,6 +11,7 @@ mod cost;
 mod design;
 mod differences;
 mod fit_coverage;
+mod fit_factor_and_direction;
 mod fit_of_modes;
 mod fit_of_responses;
 mod fit_profiles;

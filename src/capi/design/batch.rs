@@ -103,9 +103,10 @@ pub unsafe extern "C" fn hbvib_batch_options_init(o: *mut hbvib_batch_options, s
 
 /// Finds the highest peak of the response of each design within a range of frequency. A design is
 /// the model with values of its parameters: constants of contacts and the speed are set, factors
-/// multiply, and directions are added times the value. Each design is solved by itself, so that its
-/// result depends on no other, on their order or on the number of threads. Designs that change
-/// constants of contacts and forces alone share the structure of the model.
+/// multiply, and directions are added times the value, after the factors wherever they stand in the
+/// list. Each design is solved by itself, so that its result depends on no other, on their order or
+/// on the number of threads. Designs that change constants of contacts and forces alone share the
+/// structure of the model.
 ///
 /// model       stays as it is.
 /// solver      options; NULL: the defaults. A fixed response_dof makes peaks comparable.

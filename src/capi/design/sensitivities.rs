@@ -61,7 +61,8 @@ pub enum hbvib_scaling {
 
 /// A parameter of a model. Fill it by hbvib_parameter_init. Rayleigh damping and the loss factor
 /// follow the mass and stiffness matrices, as where a matrix is set anew; the factor of the damping
-/// acts on Rayleigh and modal damping as well.
+/// acts on Rayleigh and modal damping as well. Where a list has a factor s and a direction E of one
+/// matrix A, the values make s A + d E of it, in any order of the list.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hbvib_parameter {

@@ -3,14 +3,12 @@
 //! each frequency would take instead.
 
 use crate::condense::HarmonicBlock;
-use crate::condense::blocks::memory_limit::within;
-use crate::condense::on_a_basis::wave_matrices::{Assembled, WaveMatrices};
+use crate::condense::on_a_basis::wave_matrices::Factors;
 use crate::condense::tuned_wheel::tuned_plan::TunedPlan;
 use crate::error::Result;
-use crate::interrupt::Interrupt;
 use crate::linalg::factors::cholesky::entries_by_degrees;
-use crate::linalg::factors::inertia::eigenvalues_below;
-use crate::linalg::sparse_storage::sparse::{Columns, Csc};
+use crate::linalg::factors::inertia::Below;
+use crate::linalg::sparse_storage::sparse::Csc;
 
 /// Usual columns of a basis per input, and besides.
 /// Kind: tuned; measured on: not recorded.
@@ -35,40 +33,31 @@ const WORK_OF_ALL_MODES: f64 = 0.2;
 const ALONG_RANGE: f64 = 600.0;
 const AT_ONE: f64 = 5.0;
 
-/// Whether a basis for `inputs` forces and others `beside` them in the first block, of `most` columns at most, is larger than its
-/// first blocks with gain: its columns suffice, and take
-/// less time than the factors. `true` where the natural frequencies cannot be counted.
-///
-/// # Errors
-/// `OutOfMemory`, `Argument` for the limit of memory; `StoppedByCaller`.
-pub(crate) fn is_worth_its_columns(
-    matrices: &WaveMatrices<'_>,
-    (inputs, beside, most): (usize, usize, usize),
-    interrupt: &Interrupt<'_>,
-) -> Result<bool> {
-    let Some(factors) = matrices.instead_of else {
-        return Ok(true);
-    };
-    let Some(Assembled { stiffness, mass, .. }) = matrices.assembled(interrupt)? else {
-        return Ok(true);
-    };
-    let real = stiffness.is_real() && mass.is_real();
-    let allow = |bytes| within(matrices.memory_limit, bytes + matrices.model.kept().bytes());
-    let sigma = factors.highest * factors.highest;
-    let Some(below) = eigenvalues_below(&stiffness, (sigma, &mass), real, allow, interrupt)? else {
-        return Ok(true);
-    };
+/// Numbers that decide whether a basis is larger than its first blocks with gain.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Outlook {
+    /// Forces that it serves.
+    pub inputs: usize,
+    /// Others beside them in the first block.
+    pub beside: usize,
+    /// Most columns that it may have.
+    pub most: usize,
+}
+
+/// Whether a basis of a structure of `n` degrees of freedom is larger than its first blocks with gain, by the count `below` of
+/// natural frequencies up to the highest one that it serves: its columns suffice, and take less time than the `factors`.
+pub(crate) fn is_worth_its_columns(outlook: Outlook, factors: &Factors, below: Below, n: usize) -> bool {
     let (per_input, besides) = USUAL_COLUMNS;
-    let columns = OF_RESONANCE * below.count + per_input * inputs + besides + beside;
-    if columns > most {
-        return Ok(false);
+    let columns = OF_RESONANCE * below.count + per_input * outlook.inputs + besides + outlook.beside;
+    if columns > outlook.most {
+        return false;
     }
     if factors.beside_modes {
-        return Ok(true);
+        return true;
     }
-    let of_one = of_factors(below.entries, stiffness.columns());
+    let of_one = of_factors(below.entries, n);
     let times = if factors.along_range { ALONG_RANGE } else { AT_ONE };
-    Ok(OF_COLUMNS * (columns as f64).powi(3) <= times * factors.harmonics as f64 * of_one)
+    OF_COLUMNS * (columns as f64).powi(3) <= times * factors.harmonics as f64 * of_one
 }
 
 /// Work of complex LU factors of order n whose triangle has `entries` entries.

@@ -2,7 +2,7 @@
 
 use crate::condense::blocks::memory_limit::within;
 use crate::condense::by_modes::few_directions::FewDirections;
-use crate::condense::on_a_basis::basis_outlook::is_worth_its_columns;
+use crate::condense::on_a_basis::basis_outlook::{Outlook, is_worth_its_columns};
 use crate::condense::on_a_basis::certificate::Certificate;
 use crate::condense::on_a_basis::residual_directions::residual_directions;
 use crate::condense::on_a_basis::wave_matrices::{Assembled, Damping, WaveMatrices};
@@ -158,7 +158,12 @@ fn build<T: Entry>(
         krylov.give_basis(back(wave.basis));
         let mut complete = found.basis <= limit || full;
         if !complete && is_worth.is_none() {
-            let worth = is_worth_its_columns(matrices, (wave.inputs.len(), beside, most), interrupt)?;
+            let outlook = Outlook {
+                inputs: wave.inputs.len(),
+                beside,
+                most,
+            };
+            let worth = is_worth_more(&mut krylov, matrices, outlook, &prepared, interrupt)?;
             is_worth = Some(worth);
             complete = !worth;
         }
@@ -182,6 +187,27 @@ fn build<T: Entry>(
         wave.pencil = pencil(&krylov, &prepared, interrupt)?;
         wave.basis = basis(krylov.take_basis());
     }
+}
+
+/// Whether more blocks are worth it, which one factorisation tells. It takes the memory of the factor of the basis, which is
+/// made again. `true` where the natural frequencies cannot be counted.
+fn is_worth_more<T: Entry>(
+    krylov: &mut BlockKrylov<T>,
+    matrices: &WaveMatrices<'_>,
+    outlook: Outlook,
+    prepared: &Prepared,
+    interrupt: &Interrupt<'_>,
+) -> Result<bool> {
+    let Some(factors) = &matrices.instead_of else {
+        return Ok(true);
+    };
+    let below = {
+        let shifted = krylov.shifted(-factors.highest * factors.highest, interrupt)?;
+        krylov.factor().negative_pivots(&shifted, interrupt)?
+    };
+    let a = krylov.shifted(prepared.shift, interrupt)?;
+    krylov.factor().make_again(&a, interrupt)?;
+    Ok(below.is_none_or(|below| is_worth_its_columns(outlook, factors, below, prepared.n)))
 }
 
 /// Adds blocks until the basis has grown enough for another certificate; `false` where nothing is left to add. A

@@ -275,7 +275,7 @@ fn modes_within(k: &Csc, m: &Csc, range: Range, interrupt: &Interrupt<'_>) -> Re
     if n > DENSE_IF_MANY {
         // The law of inertia tells whether the lowest modes would reach beyond the range.
         let real = k.is_real() && m.is_real();
-        let below = eigenvalues_below(k, (interval.1, m), real, |_| Ok(()), interrupt)?;
+        let below = eigenvalues_below(k, (interval.1, m), real, interrupt)?;
         if below.is_none_or(|below| below.count < FIRST_MODES) {
             let pairs = lanczos::lowest(k, m, FIRST_MODES, interrupt)?;
             if pairs.values.len() < FIRST_MODES || pairs.values.last().is_some_and(|&x| x > high * high) {

@@ -17,7 +17,7 @@ use crate::options::Range;
 use crate::options::{ForcedOptions, ModeChoice, ModeOptions, SolverOptions};
 use crate::results::stored::mode_branch::ModeField;
 use crate::results::{Branch, Special};
-use crate::sensitivity::{Parameter, Reason, design_with_bases};
+use crate::sensitivity::{Parameter, Reason, by_value, design_with_bases};
 use crate::studies::fit::fit_data::{DataKind, FitData};
 use crate::studies::fit::fit_unknowns::Named;
 use crate::studies::fit::shared_work::SharedWork;
@@ -179,7 +179,15 @@ impl Predictor<'_> {
         if parameters.is_empty() {
             return Ok(None);
         }
-        design_with_bases(common, &parameters, &values).map(Some)
+        if !parameters.iter().any(Parameter::is_factor) {
+            return design_with_bases(common, &parameters, &values).map(Some);
+        }
+        // A factor acts before the directions that all sets have.
+        for (k, _) in self.scopes.iter().enumerate().filter(|(_, scope)| scope.is_none()) {
+            try_push(&mut parameters, self.parameters[k], CONTEXT)?;
+            try_push(&mut values, theta[k], CONTEXT)?;
+        }
+        design_with_bases(self.model, &parameters, &values).map(Some)
     }
 
     /// The parameters that act in a data set, and their indices.
@@ -354,26 +362,42 @@ impl Predictor<'_> {
             return Ok(None);
         }
         (into.values[2 * i], into.values[2 * i + 1]) = (found.value.re, found.value.im);
-        for ((slope, reason), &k) in found.values.iter().zip(&found.reasons).zip(numbers) {
-            let factor = self.usable(k, *reason, into.theta)?;
-            into.slopes[2 * i * p + k] = factor.map_or(0.0, |f| f * slope.re);
-            into.slopes[(2 * i + 1) * p + k] = factor.map_or(0.0, |f| f * slope.im);
+        let slopes = self.slopes_of((parameters, numbers), &found.values, &found.reasons, into.theta)?;
+        for (slope, &k) in slopes.iter().zip(numbers) {
+            into.slopes[2 * i * p + k] = slope.re;
+            into.slopes[(2 * i + 1) * p + k] = slope.im;
         }
         Ok(Some(point))
     }
 
-    /// Factor of a derivative by the k-th parameter. `None` where the derivative does not exist: at an onset of slip
-    /// and in a fold the search goes on without it.
-    fn usable(&self, k: usize, reason: Reason, theta: &[f64]) -> Result<Option<f64>> {
-        match reason {
-            Reason::Exists => Ok(Some(self.parameters[k].relative_at(theta[k]))),
-            Reason::OnsetOfSlip { .. } | Reason::Fold => Ok(None),
-            Reason::ZeroConstant => fail!(
-                Argument,
-                "{} is 0, where the derivative exists on one side only; start above 0",
-                Named(&self.parameters[k])
-            ),
+    /// Derivatives by the values of the parameters of a set from those by the parameters of its model as it is. 0 where one does not
+    /// exist: at an onset of slip and in a fold the search goes on without it.
+    fn slopes_of(
+        &self,
+        (parameters, numbers): (&[Parameter<'_>], &[usize]),
+        of: &[Complex64],
+        reasons: &[Reason],
+        theta: &[f64],
+    ) -> Result<Vec<Complex64>> {
+        let mut values = try_vec(numbers.len(), 0.0, CONTEXT)?;
+        for (value, &k) in values.iter_mut().zip(numbers) {
+            *value = theta[k];
         }
+        let mut slopes = try_vec(numbers.len(), Complex64::ZERO, CONTEXT)?;
+        for (i, (slope, reason)) in slopes.iter_mut().zip(reasons).enumerate() {
+            match reason {
+                Reason::Exists => *slope = by_value(parameters, &values, of, i),
+                Reason::OnsetOfSlip { .. } | Reason::Fold => {}
+                Reason::ZeroConstant => {
+                    return fail!(
+                        Argument,
+                        "{} is 0, where the derivative exists on one side only; start above 0",
+                        Named(&self.parameters[numbers[i]])
+                    );
+                }
+            }
+        }
+        Ok(slopes)
     }
 
     /// Writes the derivatives of a result at a point.
@@ -388,9 +412,13 @@ impl Predictor<'_> {
         let (parameters, numbers) = into.own;
         let found = sensitivity_with(model, branch, point, parameters, of, self.interrupt)?;
         let p = self.parameters.len();
-        for ((slope, reason), &k) in found.values.iter().zip(&found.reasons).zip(numbers) {
-            let factor = self.usable(k, *reason, into.theta)?;
-            into.slopes[row * p + k] = factor.map_or(0.0, |f| f * slope);
+        let mut of = try_vec(numbers.len(), Complex64::ZERO, CONTEXT)?;
+        for (of, &value) in of.iter_mut().zip(&found.values) {
+            *of = value.into();
+        }
+        let slopes = self.slopes_of((parameters, numbers), &of, &found.reasons, into.theta)?;
+        for (slope, &k) in slopes.iter().zip(numbers) {
+            into.slopes[row * p + k] = slope.re;
         }
         Ok(())
     }

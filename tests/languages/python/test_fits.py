@@ -303,6 +303,10 @@ for end in ("mat", "npz", "csv"):
 check("files of columns", np.allclose(fits[0], fits[1], rtol=1e-9) and np.allclose(fits[0], fits[2], rtol=1e-9), fits)
 with open(os.path.join(folder, "bad.csv"), "w", encoding="utf-8") as file:
     print("hz, re\n1, x", file=file)
+with open(os.path.join(folder, "table.csv"), "w", encoding="utf-8-sig") as file:
+    print('# from a spreadsheet\n"hz","re"\n"1",-2', file=file)
+table = hbvib.io.read_columns(os.path.join(folder, "table.csv"))
+check("a mark of encoding and quotes are no part of names", list(table) == ["hz", "re"] and table["re"][0] == -2, table)
 raises("a word", ValueError, hbvib.io.read_columns, os.path.join(folder, "bad.csv"), words="needs 2 numbers")
 
 # Modes of universal files: a normal and a complex one, numbers that touch, a data set between; the frequency fits a stiffness.

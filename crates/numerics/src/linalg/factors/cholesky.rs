@@ -4,6 +4,7 @@
 use crate::error::{Error, Result, fail, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::elimination_order::nested_dissection;
+use crate::linalg::factors::inertia::{Below, negative_pivots};
 use crate::linalg::sparse_storage::row_index::widened;
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::linalg::sparse_storage::triangle::{Entry, Triangle};
@@ -160,7 +161,6 @@ impl<T: Entry> Cholesky<T> {
         interrupt: &Interrupt<'_>,
     ) -> Result<core::result::Result<Self, usize>> {
         let n = a.n;
-        let no_memory = || Error::out_of_memory(CONTEXT);
         if a.values.iter().any(|x| !x.complex().is_finite()) {
             return fail!(Singular, "a sparse matrix of order {n} is not finite");
         }
@@ -171,22 +171,11 @@ impl<T: Entry> Cholesky<T> {
         let need = symbolic.factorize_numeric_llt_scratch::<T>(Par::Seq, faer::Spec::default());
         allow(symbolic.len_val() * size_of::<T>() + need.unaligned_bytes_required())?;
         let mut values = try_vec(symbolic.len_val(), T::NONE, CONTEXT)?;
-        let mut scratch = MemBuffer::try_new(need).map_err(|_| no_memory())?;
-        let factored = symbolic.factorize_numeric_llt(
-            &mut values,
-            SparseColMatRef::new(pattern, &a.values),
-            Side::Lower,
-            LltRegularization::default(),
-            Par::Seq,
-            MemStack::new(&mut scratch),
-            faer::Spec::default(),
-        );
-        drop(scratch);
-        if let Err(LltError::NonPositivePivot { index }) = factored {
+        if let Err(index) = numeric(&symbolic, SparseColMatRef::new(pattern, &a.values), &mut values)? {
             return Ok(Err(index));
         }
         let need = symbolic.solve_in_place_scratch::<T>(CHOLESKY_AT_ONCE, Par::Seq);
-        let scratch = MemBuffer::try_new(need).map_err(|_| no_memory())?;
+        let scratch = MemBuffer::try_new(need).map_err(|_| Error::out_of_memory(CONTEXT))?;
         interrupt.check()?;
         Ok(Ok(Self {
             n,
@@ -194,6 +183,30 @@ impl<T: Entry> Cholesky<T> {
             values,
             scratch,
         }))
+    }
+
+    /// Number of negative pivots of another matrix with the pattern of A, in the memory of the factor, which [`Self::make_again`] must
+    /// restore before anything is solved; `None` where a pivot is zero or not finite.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub fn negative_pivots(&mut self, a: &Triangle<T>, interrupt: &Interrupt<'_>) -> Result<Option<Below>> {
+        negative_pivots((&self.symbolic, &mut self.values), a, interrupt)
+    }
+
+    /// Factors A once more, in the memory and the order of the first time.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `Singular` if A is not positive definite; `StoppedByCaller`.
+    pub fn make_again(&mut self, a: &Triangle<T>, interrupt: &Interrupt<'_>) -> Result<()> {
+        interrupt.announce_factorisation()?;
+        let rows = widened(&a.row_idx, CONTEXT)?;
+        let pattern = SymbolicSparseColMatRef::new_checked(self.n, self.n, &a.col_ptr, None, &rows);
+        let matrix = SparseColMatRef::new(pattern, &a.values);
+        if let Err(index) = numeric(&self.symbolic, matrix, &mut self.values)? {
+            return fail!(Singular, "pivot {index} of a factor that is made again is not positive");
+        }
+        interrupt.check()
     }
 
     /// Solves A X = B in place for the columns of `b`.
@@ -210,6 +223,29 @@ impl<T: Entry> Cholesky<T> {
         }
         Ok(())
     }
+}
+
+/// Writes the values of L in a given order of elimination; the inner error is the index of a pivot that is not positive.
+fn numeric<T: Entry>(
+    symbolic: &SymbolicCholesky<usize>,
+    a: SparseColMatRef<'_, usize, T>,
+    values: &mut [T],
+) -> Result<core::result::Result<(), usize>> {
+    let need = symbolic.factorize_numeric_llt_scratch::<T>(Par::Seq, faer::Spec::default());
+    let mut scratch = MemBuffer::try_new(need).map_err(|_| Error::out_of_memory(CONTEXT))?;
+    let factored = symbolic.factorize_numeric_llt(
+        values,
+        a,
+        Side::Lower,
+        LltRegularization::default(),
+        Par::Seq,
+        MemStack::new(&mut scratch),
+        faer::Spec::default(),
+    );
+    Ok(match factored {
+        Err(LltError::NonPositivePivot { index }) => Err(index),
+        Ok(_) => Ok(()),
+    })
 }
 
 /// Factors of a definite matrix, real or complex.

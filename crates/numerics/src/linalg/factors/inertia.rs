@@ -30,27 +30,37 @@ pub struct Below {
 }
 
 /// Number of eigenvalues of K x = λ M x below σ, from the lower triangles of K and M, where M is positive definite;
-/// `None` where a pivot is zero. `allow` is called with the number of bytes needed before they are allocated.
+/// `None` where a pivot is zero.
 ///
 /// # Errors
-/// `OutOfMemory`, that of `allow`; `StoppedByCaller`.
+/// `OutOfMemory`; `StoppedByCaller`.
 pub fn eigenvalues_below(
     k: &impl Columns,
     (sigma, m): (f64, &impl Columns),
     real: bool,
-    allow: impl FnOnce(usize) -> Result<()>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<Below>> {
     if real {
-        negative_pivots::<f64>(&Triangle::sum(k, (-sigma, m), interrupt)?, allow, interrupt)
+        negative_pivots_alone::<f64>(&Triangle::sum(k, (-sigma, m), interrupt)?, interrupt)
     } else {
-        negative_pivots::<Complex64>(&Triangle::sum(k, (-sigma, m), interrupt)?, allow, interrupt)
+        negative_pivots_alone::<Complex64>(&Triangle::sum(k, (-sigma, m), interrupt)?, interrupt)
     }
 }
 
-fn negative_pivots<T: Entry>(
+fn negative_pivots_alone<T: Entry>(a: &Triangle<T>, interrupt: &Interrupt<'_>) -> Result<Option<Below>> {
+    let symbolic = {
+        let rows = widened(&a.row_idx, CONTEXT)?;
+        let pattern = SymbolicSparseColMatRef::new_checked(a.n, a.n, &a.col_ptr, None, &rows);
+        analysed_by_degrees(pattern, interrupt)?
+    };
+    let mut values = try_vec(symbolic.len_val(), T::NONE, CONTEXT)?;
+    negative_pivots((&symbolic, &mut values), a, interrupt)
+}
+
+/// Number of negative pivots of a matrix in a given order of elimination, with the memory of its factor.
+pub(super) fn negative_pivots<T: Entry>(
+    (symbolic, values): (&SymbolicCholesky<usize>, &mut [T]),
     a: &Triangle<T>,
-    allow: impl FnOnce(usize) -> Result<()>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<Below>> {
     if a.values.iter().any(|x| !x.complex().is_finite()) {
@@ -59,13 +69,10 @@ fn negative_pivots<T: Entry>(
     interrupt.announce_factorisation()?;
     let rows = widened(&a.row_idx, CONTEXT)?;
     let pattern = SymbolicSparseColMatRef::new_checked(a.n, a.n, &a.col_ptr, None, &rows);
-    let symbolic = analysed_by_degrees(pattern, interrupt)?;
     let need = symbolic.factorize_numeric_ldlt_scratch::<T>(Par::Seq, faer::Spec::default());
-    allow(symbolic.len_val() * size_of::<T>() + need.unaligned_bytes_required())?;
-    let mut values = try_vec(symbolic.len_val(), T::NONE, CONTEXT)?;
     let mut scratch = MemBuffer::try_new(need).map_err(|_| Error::out_of_memory(CONTEXT))?;
     let factored = symbolic.factorize_numeric_ldlt(
-        &mut values,
+        values,
         SparseColMatRef::new(pattern, &a.values),
         Side::Lower,
         LdltRegularization::default(),
@@ -78,7 +85,7 @@ fn negative_pivots<T: Entry>(
     }
     interrupt.check()?;
     let entries = values.len();
-    Ok(signs(&symbolic, &values).map(|count| Below { count, entries }))
+    Ok(signs(symbolic, values).map(|count| Below { count, entries }))
 }
 
 /// Number of negative entries of D, which are the diagonals of the factor's columns; `None` where one is not finite.

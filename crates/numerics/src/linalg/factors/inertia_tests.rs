@@ -1,6 +1,7 @@
 //! Tests of counts of eigenvalues.
 
 use super::*;
+use crate::linalg::factors::cholesky::Cholesky;
 use crate::linalg::sparse_storage::sparse::Csc;
 
 /// A chain of `n` masses with springs 1, held at both ends, over a second one that turns its phases, or not.
@@ -49,7 +50,7 @@ fn of_chain(n: usize) -> Vec<f64> {
 #[test]
 fn counts_are_those_of_closed_forms() {
     let count = |(k, m): &(Csc, Csc), sigma, real| {
-        eigenvalues_below(k, (sigma, m), real, |_| Ok(()), &Interrupt::none())
+        eigenvalues_below(k, (sigma, m), real, &Interrupt::none())
             .unwrap()
             .unwrap()
             .count
@@ -66,4 +67,31 @@ fn counts_are_those_of_closed_forms() {
         assert_eq!(count(&plane, sigma, true), below(&sums), "{sigma}");
         assert_eq!(count(&plane, sigma, false), below(&sums), "{sigma}");
     }
+}
+
+#[test]
+fn a_factor_counts_in_its_memory_and_is_made_again_to_the_bit() {
+    let none = Interrupt::none();
+    let side = of_chain(40);
+    let sums: Vec<f64> = side.iter().flat_map(|a| side.iter().map(move |b| a + b)).collect();
+    let (k, m) = square(40);
+    let a = Triangle::<f64>::sum(&k, (0.01, &m), &none).unwrap();
+    let mut factor = Cholesky::new(&a, |_| Ok(()), &none).unwrap().unwrap();
+    let load: Vec<f64> = (0..1600).map(|i| f64::from(i % 7) - 2.0).collect();
+    let mut before = load.clone();
+    factor.solve(&mut before, &none).unwrap();
+    for sigma in [1e-4, 0.5, 1.7, 9.0] {
+        let shifted = Triangle::sum(&k, (-sigma, &m), &none).unwrap();
+        let below = factor.negative_pivots(&shifted, &none).unwrap().unwrap();
+        assert_eq!(below.count, sums.iter().filter(|&&value| value < sigma).count());
+        factor.make_again(&a, &none).unwrap();
+        let mut after = load.clone();
+        factor.solve(&mut after, &none).unwrap();
+        assert!(before.iter().zip(&after).all(|(x, y)| x.to_bits() == y.to_bits()));
+    }
+    assert!(
+        factor
+            .make_again(&Triangle::sum(&k, (-0.5, &m), &none).unwrap(), &none)
+            .is_err()
+    );
 }

@@ -115,6 +115,19 @@ impl<T: Entry> BlockKrylov<T> {
         &self.gram
     }
 
+    /// The factor of A, whose memory may serve another matrix while nothing is solved.
+    pub fn factor(&mut self) -> &mut Cholesky<T> {
+        &mut self.factor
+    }
+
+    /// The lower triangle of K + σM for another σ.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub fn shifted(&self, sigma: f64, interrupt: &Interrupt<'_>) -> Result<Triangle<T>> {
+        Triangle::sum(&self.stiffness, (sigma, &self.mass), interrupt)
+    }
+
     /// Takes the basis out, column after column. [`Self::give_basis`] must return it before further blocks are added.
     pub fn take_basis(&mut self) -> Vec<T> {
         core::mem::take(&mut self.basis)

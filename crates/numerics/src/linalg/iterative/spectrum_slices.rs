@@ -38,7 +38,7 @@ pub fn within(
 ) -> Result<Option<Pairs>> {
     let real = k.is_real() && m.is_real();
     let below = |sigma: f64| -> Result<Option<usize>> {
-        let counted = eigenvalues_below(k, (sigma, m), real, |_| Ok(()), interrupt)?;
+        let counted = eigenvalues_below(k, (sigma, m), real, interrupt)?;
         Ok(counted.map(|below| below.count))
     };
     let (first, end) = (below(low)?, below(high)?);

@@ -137,6 +137,29 @@ pub struct Triangle<T> {
     pub values: Vec<T>,
 }
 
+/// Reads the lower triangle alone.
+impl<T: Entry> Columns for Triangle<T> {
+    fn columns(&self) -> usize {
+        self.n
+    }
+
+    fn stored(&self) -> usize {
+        self.values.len()
+    }
+
+    fn visit(&self, j: usize, mut take: impl FnMut(usize, Complex64)) {
+        for at in self.col_ptr[j]..self.col_ptr[j + 1] {
+            take(self.row_idx[at] as usize, self.values[at].complex());
+        }
+    }
+
+    fn get(&self, i: usize, j: usize) -> Complex64 {
+        let column = self.col_ptr[j]..self.col_ptr[j + 1];
+        let place = self.row_idx[column.clone()].binary_search_by(|row| (*row as usize).cmp(&i));
+        place.map_or(Complex64::ZERO, |at| self.values[column.start + at].complex())
+    }
+}
+
 impl<T: Entry> Triangle<T> {
     /// The lower triangle of K + σM, without copies of the whole.
     ///
