@@ -70,8 +70,8 @@ def screened(predicted: Values, find: Callable[[Numbers], Values], p: float, alp
     most        values that are found in all.
 
     The interval is that of the order statistics of all values. Whether a value lies beyond an end is judged by its prediction where
-    that is sure: the errors of neighbours by prediction are known from those that were found, and fall exponentially beyond the
-    largest fifth. Values are found in the order of their probability to be misjudged, until that of a single error is a tenth of alpha.
+    that is sure: the errors of neighbours by prediction, about the line through their values, are known from those that were found,
+    and fall exponentially beyond the largest fifth. Values are found in the order of their probability to be misjudged, until that of a single error is a tenth of alpha.
     Where `most` ends the search before, the ranks of the ends move outwards by the number of errors that must be allowed for.
     """
     n = len(predicted)
@@ -117,8 +117,11 @@ def _errors(predicted: Values, known: Values, order: Numbers) -> tuple[Values, T
     groups = np.array_split(at, max(1, len(at) // _IN_GROUP))
     edges = np.array([predicted[group[-1]] for group in groups[:-1]])
     of = np.searchsorted(edges, predicted, side="left")
-    errors = [np.sort(known[group] - predicted[group]) for group in groups]
-    middle = predicted + np.array([np.median(error) for error in errors])[of]
+    # Predictions that tell little scatter by themselves: what they say of a group is the line through its values.
+    slopes = np.array([_slope(predicted[group], known[group]) for group in groups])
+    errors = [np.sort(known[group] - slope * predicted[group]) for slope, group in zip(slopes, groups)]
+    told = slopes[of] * predicted
+    middle = told + np.array([np.median(error) for error in errors])[of]
 
     def beyond(sign: float) -> Tail:
         sides = [np.sort(sign * error) for error in errors]
@@ -127,10 +130,17 @@ def _errors(predicted: Values, known: Values, order: Numbers) -> tuple[Values, T
             found = np.zeros(len(predicted))
             for number, side in enumerate(sides):
                 here = of == number
-                found[here] = _exceeds(side, sign * (level - predicted[here]))
+                found[here] = _exceeds(side, sign * (level - told[here]))
             return found
         return tail
     return middle, beyond(1.0), beyond(-1.0)
+
+
+def _slope(predicted: Values, known: Values) -> float:
+    """Slope of the line through values over their predictions, by least squares; 1 for predictions that are all alike."""
+    away = predicted - predicted.mean()
+    square = float(away @ away)
+    return float(away @ known) / square if square > 0 else 1.0
 
 
 def _exceeds(errors: Values, x: Values) -> Values:

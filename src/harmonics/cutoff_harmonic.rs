@@ -10,19 +10,15 @@
 use crate::condense::Condensed;
 use crate::condense::by_factors::flexibility::Workspace;
 use crate::error::{Result, Status, try_vec};
-use crate::fourier::HarmonicSet;
+use crate::harmonics::carried_harmonics::{block_of, carried_from, carried_to};
 use crate::harmonics::estimate::CONTEXT;
+use crate::harmonics::resonant_harmonics::{COMPLIANT, ResonantHarmonics, Sought, on_pattern};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::eigen;
 use crate::linalg::factors::lu::Lu;
 use crate::linalg::inner;
-use crate::linalg::libraries::DMatrix;
 use num_complex::Complex64;
 use std::sync::Arc;
-
-/// Norm of kt^½ G kt^½ from which on the structure is compliant in a harmonic.
-/// Kind: tuned; measured on: not recorded.
-const COMPLIANT: f64 = 0.5;
 
 /// Degrees of freedom up to which a factorisation costs about as much as a sum over modes, so that every harmonic may be checked, and levels
 /// of harmonics need no modes.
@@ -73,6 +69,8 @@ pub(super) struct CutoffHarmonic {
     workspace: Workspace,
     /// Highest natural frequency of the structure without its contacts, where it is known.
     highest: Option<f64>,
+    /// Modes of a small structure, or those by which the flexibility of a larger one is a sum.
+    resonant: ResonantHarmonics,
     /// Last cut-off found: as a frequency, the angular frequency of the point, and the harmonic from which the search
     /// began.
     found: Option<(f64, f64, usize)>,
@@ -84,12 +82,21 @@ pub(super) struct CutoffHarmonic {
 }
 
 impl CutoffHarmonic {
-    /// Memory for a condensed model.
-    pub fn new(condensed: Arc<Condensed>, interrupt: &Interrupt<'_>) -> Result<Self> {
+    /// Memory for a condensed model; `solved` is that of a point, whose modes or poles serve it.
+    pub fn new(condensed: Arc<Condensed>, solved: &Condensed, interrupt: &Interrupt<'_>) -> Result<Self> {
         let coordinates = condensed.coordinates();
+        let mut resonant = ResonantHarmonics::default();
+        let highest = highest_frequency(&condensed, &mut resonant, interrupt)?;
+        if condensed.ndof() > SMALL_STRUCTURE {
+            for block in condensed.blocks() {
+                let source = block_of(solved, block.number).and_then(|i| solved.blocks()[i].source.as_ref());
+                resonant.add_source(block, source)?;
+            }
+        }
         Ok(Self {
             workspace: Workspace::new(&condensed, None)?,
-            highest: highest_frequency(&condensed, interrupt)?,
+            highest,
+            resonant,
             vectors: [
                 try_vec(coordinates, Complex64::ZERO, CONTEXT)?,
                 try_vec(coordinates, Complex64::ZERO, CONTEXT)?,
@@ -102,19 +109,28 @@ impl CutoffHarmonic {
         })
     }
 
-    /// The cut-off harmonic where it follows from the last one found, without a search and its upper bound; else
-    /// `None`.
-    pub fn known(&self, omega: f64, from: usize) -> Option<usize> {
-        let found = self.found.filter(|found| self.serves(*found, omega, from));
-        found.map(|(frequency, ..)| (frequency / omega).round() as usize)
+    /// The cut-off harmonic of those `sought` where it follows from the last one found, without a search and its upper bound; else
+    /// `None`. At each frequency other harmonics are resonant.
+    pub fn known(&self, omega: f64, sought: Sought) -> Option<usize> {
+        let found = self.found.filter(|found| self.serves(*found, omega, sought.from));
+        found.map(|(frequency, ..)| {
+            let from = ((frequency / omega).round() as usize).max(sought.from);
+            self.resonant.last(&self.condensed, omega, Sought { from, ..sought })
+        })
     }
 
-    /// The last harmonic above `from` and up to `most` in which the structure is compliant, at the angular frequency
-    /// ω; `from` where it is compliant in none.
-    pub fn at(&mut self, omega: f64, from: usize, most: usize, interrupt: &Interrupt<'_>) -> Result<usize> {
-        if let Some(known) = self.known(omega, from) {
-            return Ok(known.clamp(from, most.max(from)));
+    /// The last harmonic of those `sought` in which the structure is compliant, at the angular frequency ω; the first of them
+    /// where it is compliant in none.
+    pub fn at(&mut self, omega: f64, sought: Sought, interrupt: &Interrupt<'_>) -> Result<usize> {
+        if let Some(known) = self.known(omega, sought) {
+            return Ok(known.clamp(sought.from, sought.most.max(sought.from)));
         }
+        let from = self.searched(omega, sought.from, sought.most, interrupt)?;
+        Ok(self.resonant.last(&self.condensed, omega, Sought { from, ..sought }))
+    }
+
+    /// The last compliant harmonic but for single ones in which a mode resonates.
+    fn searched(&mut self, omega: f64, from: usize, most: usize, interrupt: &Interrupt<'_>) -> Result<usize> {
         let reaches = |(frequency, ..): (f64, f64, usize)| most as f64 * omega <= (1.0 + FINE) * frequency;
         if self
             .beyond
@@ -248,14 +264,6 @@ impl CutoffHarmonic {
     }
 }
 
-/// Index of a carried harmonic on the wave of harmonic h, or on the nearest carried wave.
-fn block_of(condensed: &Condensed, h: usize) -> Option<usize> {
-    let numbers = condensed.set().numbers();
-    let period = condensed.in_step().max(1);
-    let same = numbers.iter().position(|&k| k > 0 && k % period == h % period);
-    same.or_else(|| numbers.iter().rposition(|&k| k > 0))
-}
-
 /// Largest singular value of a column-major matrix by the power method on AᴴA: a lower bound, nearly always exact to
 /// a few per cent.
 fn spectral_norm(a: &[Complex64], [x, y]: &mut [Vec<Complex64>; 2]) -> f64 {
@@ -286,22 +294,20 @@ fn spectral_norm(a: &[Complex64], [x, y]: &mut [Vec<Complex64>; 2]) -> f64 {
 }
 
 /// Highest natural frequency over the waves of a small structure without its contacts; `None` if it is not known.
-fn highest_frequency(condensed: &Condensed, interrupt: &Interrupt<'_>) -> Result<Option<f64>> {
+/// The modes are added to `resonant`.
+fn highest_frequency(
+    condensed: &Condensed,
+    resonant: &mut ResonantHarmonics,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<f64>> {
     let n = condensed.ndof();
     if n > SMALL_STRUCTURE {
         return Ok(None);
     }
     let mut highest = 0.0_f64;
     for block in condensed.blocks().iter().take(2 * condensed.in_step() + 1) {
-        let mut k = DMatrix::<Complex64>::zeros(n, n);
-        let mut m = DMatrix::<Complex64>::zeros(n, n);
-        let pattern = &block.matrices.reference;
-        for j in 0..n {
-            for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
-                k[(pattern.row_idx[at], j)] = block.matrices.stiffness[at];
-                m[(pattern.row_idx[at], j)] = block.matrices.mass[at];
-            }
-        }
+        let k = on_pattern(block, &block.matrices.stiffness);
+        let m = on_pattern(block, &block.matrices.mass);
         if (&k - k.adjoint()).norm() > 1e-9 * k.norm() {
             return Ok(None);
         }
@@ -311,29 +317,9 @@ fn highest_frequency(condensed: &Condensed, interrupt: &Interrupt<'_>) -> Result
             Ok(pairs) => pairs,
         };
         highest = pairs.values.iter().fold(highest, |w, x| w.max(x.max(0.0).sqrt()));
+        resonant.add_pairs(block, &pairs)?;
     }
     Ok(Some(highest))
-}
-
-/// The least harmonic to which a point of a response that carries a set is extended: with twice its harmonics, and two more of
-/// them at least. The
-/// change by the first that was left out may vanish by chance where that by the second does not.
-pub(super) fn least_extension(set: &HarmonicSet) -> usize {
-    let own = set.numbers().last().copied().unwrap_or(0);
-    let second = own + 2 * set.base() * set.stride();
-    carried_from(set, second.max(2 * own + 1))
-}
-
-/// The lowest harmonic not below h that sets like `set` carry.
-pub(super) fn carried_from(set: &HarmonicSet, h: usize) -> usize {
-    let (base, step) = (set.base(), set.base() * set.stride());
-    base + h.saturating_sub(base).div_ceil(step) * step
-}
-
-/// The highest harmonic not above h that sets like `set` carry, at least the base.
-fn carried_to(set: &HarmonicSet, h: usize) -> usize {
-    let (base, step) = (set.base(), set.base() * set.stride());
-    base + h.saturating_sub(base) / step * step
 }
 
 #[cfg(test)]
@@ -366,16 +352,6 @@ mod tests {
         assert!((spectral_norm(&a, &mut [memory(), memory()]) - 1.7).abs() < 1e-3);
     }
 
-    #[test]
-    fn carried_numbers_are_found_on_both_sides() {
-        let set = HarmonicSet::excited(&[3], 15, true, true, false).unwrap();
-        assert_eq!(
-            (carried_from(&set, 1), carried_from(&set, 4), carried_from(&set, 9)),
-            (3, 9, 9)
-        );
-        assert_eq!((carried_to(&set, 14), carried_to(&set, 15)), (9, 15));
-    }
-
     /// |kt G| = kt/(m Ω² − k) = 1/2 beyond the resonance.
     #[test]
     fn a_mass_is_compliant_up_to_the_frequency_of_its_inertia() {
@@ -392,9 +368,18 @@ mod tests {
             model.add_contact(&Contact::jenkins(0, None, kt, 0.5, 1.0)).unwrap();
             model.add_force(0, 1, 1.0.into()).unwrap();
             let condensed = Condensed::new(&model, &SolverOptions::default(), omega, &Interrupt::none()).unwrap();
-            let mut cutoff = CutoffHarmonic::new(Arc::new(condensed), &Interrupt::none()).unwrap();
+            let condensed = Arc::new(condensed);
+            let mut cutoff = CutoffHarmonic::new(Arc::clone(&condensed), &condensed, &Interrupt::none()).unwrap();
             let last = ((k + 2.0 * kt) / mass).sqrt() / omega;
-            let found = cutoff.at(omega, 1, 3001, &Interrupt::none()).unwrap();
+            let found = {
+                let sought = Sought {
+                    own: 1,
+                    from: 1,
+                    most: 3001,
+                };
+                cutoff.at(omega, sought, &Interrupt::none())
+            }
+            .unwrap();
             assert!(
                 found as f64 >= last - 2.0 && found as f64 <= last + 2.0,
                 "{found} for {last}"

@@ -6,6 +6,7 @@ use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::contact::Contact;
 use crate::error::{Result, boxed, try_push};
+use crate::harmonics::carried_harmonics;
 use crate::harmonics::cutoff_harmonic::SMALL_STRUCTURE;
 use crate::harmonics::cutoff_harmonic::{self, CutoffHarmonic};
 use crate::harmonics::doubling::Doubling;
@@ -17,6 +18,7 @@ use crate::harmonics::jump_error::{OF_HALF, OF_JUMPS};
 use crate::harmonics::kept_changes::KeptChanges;
 use crate::harmonics::kept_ratio::KeptRatio;
 use crate::harmonics::one_extension::{Extent, extend_once};
+use crate::harmonics::resonant_harmonics::Sought;
 use crate::harmonics::second_estimate::SecondEstimate;
 use crate::harmonics::work::EVALUATIONS_OF_ESTIMATE;
 use crate::harmonics::work::{OF_A_POINT, OF_A_START, Sizes, Work};
@@ -33,6 +35,11 @@ use std::sync::Arc;
 /// 24 of them.
 /// Kind: tuned; measured on: not recorded.
 const FORCED_RESPONSE_ERROR_TABLES: usize = 4;
+
+/// Multiple of the lowest harmonic to which a point is extended at least where that costs little: where a resonance is narrow, changes
+/// by a few harmonics cancel each other.
+/// Kind: tuned; measured on: chains of 6 to 300 masses at the onset of slip, damping ratios 1e-4 to 3e-2.
+const FEW: usize = 15;
 
 /// Share of the work of an estimate that told nothing that one of the same motion with more harmonics may take.
 /// Kind: tuned; measured on: not recorded.
@@ -204,18 +211,30 @@ impl<'a> ForcedEstimator<'a> {
     fn extent(&mut self, solved: &Solved<'_>, work: &Work) -> Result<Option<Extent>> {
         let set = solved.condensed.set();
         let own = set.numbers().last().copied().unwrap_or(0);
-        let least = self.second.least(set, cutoff_harmonic::least_extension(set));
+        let least = self.second.least(set, carried_harmonics::least_extension(set));
         // How a law of the caller resists the velocity is not known: the cut-off, which counts stiffness alone, may come too early.
         let reach = if self.model.contacts().iter().any(Contact::is_of_caller) {
-            cutoff_harmonic::carried_from(set, 2 * least + 1)
+            carried_harmonics::carried_from(set, 2 * least + 1)
         } else {
             least
         };
+        let few = carried_harmonics::carried_from(set, FEW * set.base());
+        let samples = extended_options(&self.options, few).samples;
+        let reach = if few > reach && Sizes::extended(solved.condensed, few, samples).is_cheap(work) {
+            few
+        } else {
+            reach
+        };
         // With the cut-off known, bounds beyond it are not sought.
+        let mut sought = Sought {
+            own,
+            from: set.base(),
+            most: usize::MAX,
+        };
         let known = self
             .cutoff
             .as_ref()
-            .and_then(|cutoff| cutoff.known(solved.omega, set.base()));
+            .and_then(|cutoff| cutoff.known(solved.omega, sought));
         let enough = known.map_or(usize::MAX, |known| known.saturating_add(1).max(reach));
         let most = self.affordable(solved, work, enough);
         if least > most {
@@ -226,12 +245,17 @@ impl<'a> ForcedEstimator<'a> {
             let Some(resolution) = self.model_with(waves, solved)? else {
                 return Ok(None);
             };
-            self.cutoff = Some(CutoffHarmonic::new(Arc::clone(&resolution.condensed), self.interrupt)?);
+            self.cutoff = Some(CutoffHarmonic::new(
+                Arc::clone(&resolution.condensed),
+                solved.condensed,
+                self.interrupt,
+            )?);
         }
         let Some(cutoff) = &mut self.cutoff else {
             return Ok(None);
         };
-        let mut core = cutoff.at(solved.omega, set.base(), most, self.interrupt)?;
+        sought.most = most;
+        let mut core = cutoff.at(solved.omega, sought, self.interrupt)?;
         if solved.condensed.has_exchanges() {
             // No harmonic is weak, and none beyond is left out of the estimate: see `jump_error`.
             core = core.max(least).min(most);
@@ -370,7 +394,7 @@ impl<'a> ForcedEstimator<'a> {
                 }
                 return Ok(Some(series.bounded(found)));
             }
-            let next = cutoff_harmonic::carried_from(solved.condensed.set(), 2 * highest + 1);
+            let next = carried_harmonics::carried_from(solved.condensed.set(), 2 * highest + 1);
             let next = if extent.short { next } else { next.min(extent.highest) };
             let ends = next > self.affordable(solved, &work, next);
             if series.has_settled() || (ends && series.suffices()) {

@@ -6,9 +6,10 @@
 //! `resolutions` stores the equations at the levels of a run, and `transfer` converts points from one to another.
 //!
 //! `estimate` has the error of a solved point: `forced_response_error` and `mode_error` make it, from solutions of the
-//! `extended_system` up to the `cutoff_harmonic`, within the `work` that a point may take; a `second_estimate` follows where it does not
+//! `extended_system` up to the `cutoff_harmonic` or the last of the `resonant_harmonics`, within the `work` that a point may take; a `second_estimate` follows where it does not
 //! tell the error.
 
+mod carried_harmonics;
 pub(crate) mod controller;
 pub mod cutoff_harmonic;
 mod decision;
@@ -29,6 +30,7 @@ mod mode_doubling;
 pub mod mode_error;
 mod one_extension;
 pub(crate) mod resolutions;
+mod resonant_harmonics;
 mod second_estimate;
 pub(crate) mod transfer;
 mod work;

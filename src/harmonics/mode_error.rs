@@ -4,6 +4,7 @@ use crate::condense::by_factors::dynamic_stiffness::DampedFrequency;
 use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::error::{Result, boxed, try_copy, try_push, try_vec};
+use crate::harmonics::carried_harmonics;
 use crate::harmonics::cutoff_harmonic::{self, CutoffHarmonic};
 use crate::harmonics::estimate::{
     CONTEXT, ESTIMATE_ROUNDING, ESTIMATE_SHARE, extended_options, has_converged_tail, omits_nothing, or_unknown,
@@ -13,6 +14,7 @@ use crate::harmonics::extended_newton::{FirstStep, extend};
 use crate::harmonics::extended_system::ExtendedSystem;
 use crate::harmonics::factored_harmonics::{factored, whole};
 use crate::harmonics::mode_doubling::{ModeRatios, ModeSeries};
+use crate::harmonics::resonant_harmonics::Sought;
 use crate::harmonics::work::EVALUATIONS_OF_ESTIMATE;
 use crate::harmonics::work::{OF_A_START, Sizes, Work};
 use crate::harmonics::{Corrected, Estimate, Solved};
@@ -152,7 +154,7 @@ impl<'a> ModeEstimator<'a> {
         let work = Work::of_point(&sizes, solved.iterations.max(OF_A_START), self.options.memory_limit);
         let most = self.affordable(solved, &work);
         let own = set.numbers().last().copied().unwrap_or(0);
-        let least = cutoff_harmonic::carried_from(set, 2 * own + 1);
+        let least = carried_harmonics::carried_from(set, 2 * own + 1);
         if least > most {
             return solved.unknown(state.damping, true).map(Some);
         }
@@ -161,12 +163,17 @@ impl<'a> ModeEstimator<'a> {
             let Some((_, resolution)) = self.model_with(waves)? else {
                 return solved.unknown(state.damping, true).map(Some);
             };
-            self.cutoff = Some(CutoffHarmonic::new(Arc::clone(&resolution.condensed), self.interrupt)?);
+            self.cutoff = Some(CutoffHarmonic::new(
+                Arc::clone(&resolution.condensed),
+                solved.condensed,
+                self.interrupt,
+            )?);
         }
         let Some(cutoff) = &mut self.cutoff else {
             return Ok(None);
         };
-        let highest = cutoff.at(solved.omega, least, most, self.interrupt)?;
+        let sought = Sought { own, from: least, most };
+        let highest = cutoff.at(solved.omega, sought, self.interrupt)?;
         let short = highest >= most;
         let samples = extended_options(&self.options, highest).samples;
         if highest > least && !Sizes::extended(solved.condensed, highest, samples).is_cheap(&work) {
@@ -234,7 +241,7 @@ impl<'a> ModeEstimator<'a> {
                 series.note(&mut self.ratios, least);
                 return Ok(Some(series.completed(found)));
             }
-            let next = cutoff_harmonic::carried_from(solved.condensed.set(), 2 * highest + 1);
+            let next = carried_harmonics::carried_from(solved.condensed.set(), 2 * highest + 1);
             let next = if short { next } else { next.min(core) };
             let ends = next > self.affordable(solved, &work);
             if ends && series.suffices() {

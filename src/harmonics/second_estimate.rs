@@ -8,7 +8,7 @@
 //! time.
 
 use crate::fourier::HarmonicSet;
-use crate::harmonics::cutoff_harmonic::carried_from;
+use crate::harmonics::carried_harmonics::carried_from;
 
 /// Work of a second estimate over that of the first.
 /// Kind: tuned; measured on: wheels of 24 sectors with stops.

@@ -10,4 +10,5 @@ mod error_estimate_waves;
 mod error_estimate_wells;
 mod falling_friction;
 mod few_harmonics;
+mod resonant_harmonics;
 mod tolerance;

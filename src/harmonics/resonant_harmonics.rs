@@ -1,0 +1,216 @@
+//! Harmonics in which a mode of the structure resonates. Near a mode the contacts feel its term of the flexibility alone,
+//!
+//! > ‖kt^½ G_h kt^½‖ ≈ Σ_c kt_c |r_c φ_k|²/|ω_k² − ν² + i(ν c_k + d_k)|,  ν = hω,
+//!
+//! with φᴴ M φ = 1, the motions r_c of the contacts, c_k = φᴴ C φ and d_k = φᴴ D φ of structural damping. Where damping is light this is
+//! large within a band that is narrower than the distance of two harmonics: a search for the cut-off in steps passes it, and a cut-off
+//! that was found at one frequency does not hold at the next. Modes and poles that are known cost a few operations a harmonic.
+//!
+//! The forces of contacts fall as 1/h² at least, so that a harmonic counts as far as this norm over h². One that counts as much as those
+//! behind the last of a point, whose change the estimate tells, belongs to the estimate, however far it lies above them.
+
+use crate::condense::by_modes::sum_terms::Source;
+use crate::condense::{Condensed, HarmonicBlock};
+use crate::error::{Result, try_push};
+use crate::harmonics::carried_harmonics::{block_of, carried_from, carried_to};
+use crate::harmonics::estimate::CONTEXT;
+use crate::linalg::dense::eigen::Pairs;
+use crate::linalg::libraries::DMatrix;
+use num_complex::Complex64;
+
+/// Norm of kt^½ G kt^½ from which on the structure is compliant in a harmonic.
+/// Kind: tuned; measured on: not recorded.
+pub(super) const COMPLIANT: f64 = 0.5;
+
+/// Share of the first harmonics that are left out from which a resonant one counts beside them.
+/// Kind: tuned; measured on: chains of 6 to 300 masses at the onset of slip, damping ratios 1e-4 to 3e-2.
+const COUNTS_BESIDE: f64 = 0.3;
+
+/// Modes on each side of a harmonic whose terms are summed: close modes resonate together, and all those below act alike beyond the
+/// highest.
+/// Kind: cap.
+const BESIDE: usize = 16;
+
+/// Frequency over that of the highest mode up to which harmonics are looked at.
+/// Kind: tuned; measured on: the chains of `COUNTS_BESIDE`.
+const BEYOND_MODES: f64 = 1.25;
+
+/// Harmonics that are looked at for one point: stiff links have modes at a million times the frequency.
+/// Kind: cap.
+const MOST_LOOKED_AT: usize = 1024;
+
+/// Harmonics among which one is sought.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sought {
+    /// The last harmonic of the point.
+    pub own: usize,
+    /// The harmonic above which the search is of use.
+    pub from: usize,
+    /// The last one that may be found.
+    pub most: usize,
+}
+
+/// Modes of the waves of a model, as its contacts feel them.
+#[derive(Default)]
+pub(super) struct ResonantHarmonics {
+    /// One wave for each carried harmonic; empty where no modes are known.
+    waves: Vec<Wave>,
+}
+
+/// Modes of a wave in the order of their frequencies.
+#[derive(Default)]
+struct Wave {
+    modes: Vec<Mode>,
+    /// |r_c φ_k|², mode after mode.
+    felt: Vec<f64>,
+}
+
+/// A mode with unit modal mass.
+struct Mode {
+    /// ω_k².
+    square: f64,
+    /// c_k.
+    damping: f64,
+    /// d_k.
+    structural: f64,
+}
+
+impl ResonantHarmonics {
+    /// Adds the wave of the next carried harmonic from its undamped modes, which are all.
+    pub fn add_pairs(&mut self, block: &HarmonicBlock, pairs: &Pairs) -> Result<()> {
+        let n = pairs.vectors.nrows();
+        let of = |values: &[Complex64]| on_pattern(block, values);
+        let damping = of(&block.matrices.damping);
+        let structural = block.matrices.structural.as_ref().map(|values| of(values));
+        let mut wave = Wave::default();
+        for (k, &square) in pairs.values.iter().enumerate() {
+            let shape = &pairs.vectors.as_slice()[k * n..(k + 1) * n];
+            let form = |a: &DMatrix<Complex64>| {
+                let columns = a.as_slice().chunks_exact(n.max(1)).zip(shape);
+                columns
+                    .map(|(column, x)| crate::linalg::inner(shape, column) * x)
+                    .sum::<Complex64>()
+                    .re
+            };
+            let mode = Mode {
+                square,
+                damping: form(&damping),
+                structural: structural.as_ref().map_or(0.0, form),
+            };
+            try_push(&mut wave.modes, mode, CONTEXT)?;
+            for row in &block.motions.rows {
+                try_push(&mut wave.felt, row.along(shape).norm_sqr(), CONTEXT)?;
+            }
+        }
+        try_push(&mut self.waves, wave, CONTEXT)
+    }
+
+    /// Adds the wave of the next carried harmonic from the modes or poles by which its flexibility is a sum; none without.
+    ///
+    /// Modes have φᴴ K φ = 1 and μ = 1/ω². A pole λ has the term l r λ/(λ − iν), which near its resonance is that of a mode with
+    /// |φ|² = 2|λ|² |l r|, ω = |λ| and c = −2 Re λ.
+    pub fn add_source(&mut self, block: &HarmonicBlock, source: Option<&Source>) -> Result<()> {
+        let mut wave = Wave::default();
+        let Some(source) = source else {
+            return try_push(&mut self.waves, wave, CONTEXT);
+        };
+        let n = block.matrices.reference.rows;
+        let (shapes, adjoints) = source.shapes();
+        // The stiffest come first.
+        for k in (0..source.len()).rev() {
+            let mu = source.value(k);
+            let (mode, unit) = match source {
+                Source::Modes(modes) => {
+                    let square = mu.re.recip();
+                    let (alpha, beta) = modes.proportional;
+                    let mode = Mode {
+                        square,
+                        damping: alpha + beta * square,
+                        structural: modes.loss_factor * square,
+                    };
+                    (mode, square)
+                }
+                Source::Poles(_) => {
+                    let pole = mu.inv();
+                    // Those of negative frequencies resonate in no harmonic.
+                    let square = if pole.im > 0.0 { pole.norm_sqr() } else { 0.0 };
+                    let mode = Mode {
+                        square,
+                        damping: -2.0 * pole.re,
+                        structural: 0.0,
+                    };
+                    (mode, 2.0 * square)
+                }
+            };
+            if !(mode.square.is_finite() && mode.square > 0.0) {
+                continue;
+            }
+            try_push(&mut wave.modes, mode, CONTEXT)?;
+            let of = |all: &[Complex64], row: usize| block.motions.rows[row].along(&all[k * n..(k + 1) * n]).norm();
+            for row in 0..block.motions.rows.len() {
+                try_push(&mut wave.felt, unit * of(shapes, row) * of(adjoints, row), CONTEXT)?;
+            }
+        }
+        try_push(&mut self.waves, wave, CONTEXT)
+    }
+
+    /// The last harmonic of those `sought` in which a mode resonates at the angular frequency ω; the first of them where none does.
+    pub fn last(&self, condensed: &Condensed, omega: f64, sought: Sought) -> usize {
+        let highest = self.waves.iter().filter_map(|wave| wave.modes.last());
+        let highest = highest.map(|mode| mode.square).fold(0.0, f64::max).sqrt();
+        let set = condensed.set();
+        let step = set.base() * set.stride();
+        let top = ((BEYOND_MODES * highest / omega) as usize).saturating_add(step);
+        let mut h = carried_to(set, sought.most.min(top).min(sought.from + MOST_LOOKED_AT * step));
+        if h <= sought.from {
+            return sought.from;
+        }
+        let first = carried_from(set, sought.own + 1);
+        let first = (first..=carried_from(set, 2 * sought.own + 1).max(first + step)).step_by(step);
+        let beside = first.map(|k| self.size(condensed, (k, omega), usize::MAX) / (k as f64).powi(2));
+        let beside = COUNTS_BESIDE * beside.fold(0.0, f64::max);
+        while h > sought.from {
+            let size = self.size(condensed, (h, omega), BESIDE);
+            if size >= COMPLIANT || (beside > 0.0 && size >= beside * (h as f64).powi(2)) {
+                return h;
+            }
+            if h <= step {
+                break;
+            }
+            h -= step;
+        }
+        sought.from
+    }
+
+    /// Σ_c kt_c |G_cc| in a harmonic by so many modes on each side of it; 0 where its modes are not known.
+    fn size(&self, condensed: &Condensed, (h, omega): (usize, f64), beside: usize) -> f64 {
+        let nu = h as f64 * omega;
+        let Some(wave) = block_of(condensed, h).and_then(|i| self.waves.get(i)) else {
+            return 0.0;
+        };
+        let place = wave.modes.partition_point(|mode| mode.square < nu * nu);
+        let near = place.saturating_sub(beside)..place.saturating_add(beside).min(wave.modes.len());
+        let coordinates = condensed.coordinates();
+        let felt = |c: usize| {
+            let term = |k: usize| {
+                let mode = &wave.modes[k];
+                let d = Complex64::new(mode.square - nu * nu, nu * mode.damping + mode.structural);
+                wave.felt[k * coordinates + c] / d
+            };
+            condensed.impedance(c, nu) * near.clone().map(term).sum::<Complex64>().norm()
+        };
+        (0..coordinates).map(felt).sum()
+    }
+}
+
+/// A matrix of a block from its values at the entries of the pattern.
+pub(super) fn on_pattern(block: &HarmonicBlock, values: &[Complex64]) -> DMatrix<Complex64> {
+    let pattern = &block.matrices.reference;
+    let mut a = DMatrix::zeros(pattern.rows, pattern.cols);
+    for j in 0..pattern.cols {
+        for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
+            a[(pattern.row_idx[at], j)] = values[at];
+        }
+    }
+    a
+}
