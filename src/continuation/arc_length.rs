@@ -8,7 +8,7 @@
 mod corners;
 mod crossed_resonances;
 
-use crate::continuation::corrector::{Corrector, Outcome};
+use crate::continuation::corrector::{Corrector, Foresight, Outcome};
 use crate::continuation::history::History;
 use crate::continuation::linear_resonance::LinearResonance;
 use crate::continuation::metric::Metric;
@@ -436,7 +436,11 @@ impl Continuation {
             self.memory.row.fill(0.0);
             self.memory.row[n] = 1.0;
         }
-        self.corrector.set_may_foresee(self.is_smooth());
+        self.corrector.set_foresight(if self.is_smooth() {
+            Foresight::AlongBranch
+        } else {
+            Foresight::WithinCorrection
+        });
         let corrected = match self
             .corrector
             .correct(problem, &mut v, &self.memory.row, metric, false, interrupt)?
