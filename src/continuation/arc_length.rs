@@ -436,8 +436,12 @@ impl Continuation {
             self.memory.row.fill(0.0);
             self.memory.row[n] = 1.0;
         }
+        // A foreseen end has the tangent of the point before the last step: where branches cross, that direction leads along another one
+        // if steps are as short as Newton's.
         self.corrector.set_foresight(if self.is_smooth() {
             Foresight::AlongBranch
+        } else if step < GROWN {
+            Foresight::None
         } else {
             Foresight::WithinCorrection
         });
