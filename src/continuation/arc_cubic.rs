@@ -11,6 +11,15 @@ pub(super) fn arc_length(chord: f64, cosine: f64) -> f64 {
     if sine < 1e-8 { chord } else { chord * sine.asin() / sine }
 }
 
+/// Whether the cubic of this change from s = 0 to 1, with these derivatives of equal sign at both ends, turns twice between them.
+///
+/// Its derivative a (1 − 4s + 3s²) + b (3s² − 2s) + 6 d (s − s²) is lowest at s₀ = (2a + b − 3d) / (3 (a + b − 2d)).
+pub(super) fn turns_twice(change: f64, [a, b]: [f64; 2]) -> bool {
+    let (a, b, d) = if a < 0.0 { (-a, -b, -change) } else { (a, b, change) };
+    let (middle, bend) = (2.0 * a + b - 3.0 * d, 3.0 * (a + b - 2.0 * d));
+    a > 0.0 && b > 0.0 && middle > 0.0 && middle < bend && middle * middle > a * bend
+}
+
 /// The cubic through `a` (s = 0) and `b` (s = 1) with their tangents.
 pub struct Cubic<'p> {
     a: &'p Point,
@@ -88,11 +97,35 @@ impl<'p> Cubic<'p> {
 
 #[cfg(test)]
 mod tests {
-    use super::arc_length;
+    use super::{arc_length, turns_twice};
 
     #[test]
     fn the_arc_of_a_circle_is_longer_than_its_chord() {
         assert!((arc_length(2.0 * 0.3_f64.sin(), 0.6_f64.cos()) - 0.6).abs() < 1e-15);
         assert!((arc_length(1.0, 1.0) - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_cubic_that_turns_twice_is_told_from_one_that_does_not() {
+        let mut turning = 0;
+        for k in 0..4000 {
+            let [a, b, change] = [0.37, 0.61, 0.83].map(|x| (f64::from(k) * x).sin());
+            let slope =
+                |s: f64| a * (1.0 - 4.0 * s + 3.0 * s * s) + b * (3.0 * s * s - 2.0 * s) + 6.0 * change * (s - s * s);
+            let lowest = (0..=2000).fold(f64::INFINITY, |low, i| {
+                low.min(slope(f64::from(i) / 2000.0) * a.signum())
+            });
+            // The grid may miss a dip that is smaller than this.
+            if lowest.abs() > 1e-5 {
+                assert_eq!(
+                    turns_twice(change, [a, b]),
+                    a * b > 0.0 && lowest < 0.0,
+                    "{a} {b} {change}"
+                );
+                turning += usize::from(turns_twice(change, [a, b]));
+            }
+        }
+        assert!(turning > 500, "{turning}");
+        assert!(!turns_twice(0.0, [0.0; 2]) && !turns_twice(f64::NAN, [1.0; 2]));
     }
 }

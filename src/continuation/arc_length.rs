@@ -8,7 +8,8 @@
 mod corners;
 mod crossed_resonances;
 
-use crate::continuation::corrector::{Corrector, Outcome};
+use crate::continuation::arc_cubic;
+use crate::continuation::corrector::{Corrector, Foresight, Outcome};
 use crate::continuation::history::History;
 use crate::continuation::linear_resonance::LinearResonance;
 use crate::continuation::metric::Metric;
@@ -436,7 +437,15 @@ impl Continuation {
             self.memory.row.fill(0.0);
             self.memory.row[n] = 1.0;
         }
-        self.corrector.set_may_foresee(self.is_smooth());
+        // A foreseen end has the tangent of the point before the last step: where branches cross, that direction leads along another one
+        // if steps are as short as Newton's.
+        self.corrector.set_foresight(if self.is_smooth() {
+            Foresight::AlongBranch
+        } else if step < GROWN {
+            Foresight::None
+        } else {
+            Foresight::WithinCorrection
+        });
         let corrected = match self
             .corrector
             .correct(problem, &mut v, &self.memory.row, metric, false, interrupt)?
@@ -471,7 +480,16 @@ impl Continuation {
         let jumped = jumped && !crossed;
         self.history
             .judge(&self.memory.scratch, &point, &self.memory.row, metric);
-        if turned || jumped || back || far || point.skips_folds_from(here) {
+        // Only the end of a homotopy counts, not the loops before it.
+        let sees_loops = self.surfaces.may_leave && step > CORNER_STEP;
+        let skips = point.skips_folds_from(here)
+            || (sees_loops
+                && skips_folds_of_cubic(
+                    [here, &point],
+                    [lengths.0, lengths.1],
+                    arc_cubic::arc_length(chord, kept),
+                ));
+        if turned || jumped || back || far || skips {
             return Ok(Attempt::Failed);
         }
         if !self.steps.accepts(error) {
@@ -502,6 +520,13 @@ impl Continuation {
         );
         motion.max(observed)
     }
+}
+
+/// Whether the cubic between two points has two folds: a small loop that the parameters of the ends do not show.
+fn skips_folds_of_cubic([a, b]: [&Point; 2], lengths: [f64; 2], arc: f64) -> bool {
+    let n = a.v.len() - 1;
+    let slopes = [a.tangent[n] * arc / lengths[0], b.tangent[n] * arc / lengths[1]];
+    arc_cubic::turns_twice(b.parameter() - a.parameter(), slopes)
 }
 
 /// Smallest cosine between two directions, one step apart, that count as one line.

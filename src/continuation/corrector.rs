@@ -9,6 +9,7 @@ mod moved_tangent;
 pub(crate) mod null_direction;
 
 use crate::continuation::Metric;
+pub(crate) use crate::continuation::corrector::contraction::Foresight;
 use crate::continuation::corrector::contraction::{Contraction, Sizes};
 use crate::continuation::corrector::moved_tangent::slope_weights;
 use crate::error::{Error, Result, Status, try_extend, try_vec};
@@ -22,7 +23,7 @@ use num_complex::Complex64;
 /// Data of a converged correction.
 #[derive(Clone, Debug)]
 pub struct Corrected {
-    /// Number of Newton iterations taken.
+    /// Number of Newton iterations taken; one more where their end was foreseen from two of them.
     pub iterations: usize,
     /// Relative residual before the last correction; or a bound of the residual after it, where that was foreseen.
     pub residual: f64,
@@ -72,9 +73,9 @@ pub struct Corrector {
     failure: Option<Error>,
     /// Whether a correction may end with the factors of the iteration before.
     may_end_early: bool,
-    /// Contraction of the corrections before; and whether the next ones belong to the same smooth branch.
+    /// Contraction of the corrections before; and from what the end of a correction is foreseen.
     contraction: Contraction,
-    may_foresee: bool,
+    foresight: Foresight,
 }
 
 /// Memory of steps and tangents.
@@ -144,7 +145,7 @@ impl Corrector {
             failure: None,
             may_end_early: true,
             contraction: Contraction::UNKNOWN,
-            may_foresee: false,
+            foresight: Foresight::None,
         })
     }
 
@@ -159,9 +160,9 @@ impl Corrector {
         self.steps_taken += of_other;
     }
 
-    /// States whether the next correction belongs to a smooth branch whose points were corrected before.
-    pub fn set_may_foresee(&mut self, may_foresee: bool) {
-        self.may_foresee = may_foresee;
+    /// Sets from what the end of the next correction may be foreseen.
+    pub(crate) fn set_foresight(&mut self, foresight: Foresight) {
+        self.foresight = foresight;
     }
 
     /// Takes over memory that is no longer used, for the next tangent.
@@ -253,8 +254,9 @@ impl Corrector {
                 && self.memory.step[n].abs() * metric.p <= CORRECTOR_ROUND_OFF * (v[n].abs() + metric.p);
             let near = length <= NEAR * motion;
             let sizes = [residual, length / motion];
-            let foreseen = if iteration == 0 && residual > self.limits.tolerance && !damped {
-                self.foresee(problem, sizes)
+            let foreseen = if residual > self.limits.tolerance && !damped {
+                let within = (iteration > 0).then(|| Contraction::between(last, sizes));
+                self.foresee(problem, within, sizes)
             } else {
                 None
             };
@@ -275,7 +277,9 @@ impl Corrector {
                 if !self.solve_for_tangent(problem, metric, row, slope, interrupt)? {
                     return Ok(Outcome::Failed);
                 }
-                return self.finish(problem, v, metric, iteration, foreseen.unwrap_or(residual));
+                // A step whose end two others foresee counts as it would with its evaluation: iterations bound the work of estimates.
+                let taken = iteration + usize::from(foreseen.is_some() && iteration > 0);
+                return self.finish(problem, v, metric, taken, foreseen.unwrap_or(residual));
             }
             // Where a near-rigid contact begins to close, the residual falls while small steps are dominated by rounding. A step found by
             // iteration leaves a share of the residual, which near a singular matrix is a long step.
@@ -367,13 +371,22 @@ impl Corrector {
         norm(&self.memory.step[..self.memory.step.len() - 1]) * metric.u
     }
 
-    /// Bound of the residual after a first step from these sizes, if it is known to lead to a solution.
-    fn foresee(&mut self, problem: &mut dyn Problem, sizes: Sizes) -> Option<f64> {
+    /// Bound of the residual after a step from these sizes, if it is known to lead to a solution; `within` is the contraction of
+    /// this correction, `None` at its first step.
+    fn foresee(&mut self, problem: &mut dyn Problem, within: Option<Contraction>, sizes: Sizes) -> Option<f64> {
         // Iterative solutions and near-rigid contacts leave other residuals, and sampled laws have other matrices everywhere.
-        let is_smooth = self.may_foresee && self.system.is_direct() && !problem.has_kinks() && self.at.rounding == 0.0;
-        is_smooth
-            .then(|| self.contraction.foresee(sizes, self.limits.tolerance))
-            .flatten()
+        if !self.system.is_direct() || problem.has_kinks() || self.at.rounding > 0.0 {
+            return None;
+        }
+        match (self.foresight, within) {
+            (Foresight::AlongBranch, None) => self.contraction.foresee(sizes, self.limits.tolerance),
+            (Foresight::WithinCorrection, Some(contraction)) => {
+                // A step by earlier factors leaves a share of the residual.
+                let left = if self.factors == Factors::Own { 0.0 } else { STEP_ERROR };
+                contraction.foresee_within(sizes, left, self.limits.tolerance)
+            }
+            _ => None,
+        }
     }
 
     /// step ← −(R, 0).

@@ -2,13 +2,14 @@
 //! random models showed none), so the continuation is shown one on a problem of its own, the
 //! one-harmonic Duffing oscillator, whose folds have a closed form.
 
+use crate::common::models::{dense, diagonal};
 use hbvib::internals::Jacobian;
 use hbvib::internals::StepControl;
 use hbvib::internals::{Advance, Continuation, Metric, Point, Settings};
 use hbvib::internals::{Corrector, Outcome};
 use hbvib::internals::{Homotopy, InitialGuess, Problem, Residual};
 use hbvib::internals::{Locator, SpecialPoint};
-use hbvib::{Interrupt, Result};
+use hbvib::{Constant, Contact, ForcedOptions, Hooks, Interrupt, Result, SolverOptions};
 use num_complex::Complex64;
 
 const DAMPING: f64 = 0.05;
@@ -203,4 +204,42 @@ fn between_the_folds_every_one_of_three_solutions_is_found() {
             "{amplitude}: {flanks:?}"
         );
     }
+}
+
+#[test]
+fn a_small_loop_with_a_peak_is_not_passed_in_one_step() {
+    // A pressed stop at the end of a chain makes a loop of two folds with a small peak between them, whose height and place are
+    // those of a sweep with 20 times shorter steps.
+    let stiffness = [2.0, -1.0, 0.0, -1.0, 2.0, -1.0, 0.0, -1.0, 1.0];
+    let mut stop = Contact::unilateral(Some(2), None, 2.0, 0.0);
+    stop.set(Constant::Preload, 0.2).unwrap();
+    let model = dense(&diagonal(&[1.0; 3]), &stiffness)
+        .rayleigh(0.0, 0.02)
+        .force(2, 1, 0.4)
+        .contact(stop)
+        .build();
+    let mut missed = Vec::new();
+    for k in 0..40 {
+        let step_max = 0.034 + 0.0003 * f64::from(k);
+        let solver = SolverOptions {
+            harmonics: 4,
+            tolerance: 0.0,
+            step_max,
+            ..SolverOptions::default()
+        };
+        let range = ForcedOptions {
+            omega_start: 0.2,
+            omega_stop: 0.4,
+            ..ForcedOptions::default()
+        };
+        let branch = hbvib::forced_response(&model, &solver, &range, &mut Hooks::default()).unwrap();
+        let found = branch
+            .peaks()
+            .iter()
+            .any(|p| (p.omega - 0.331_665_023).abs() < 1e-7 && (p.amplitude - 0.684_162_589).abs() < 1e-7);
+        if !found {
+            missed.push(step_max);
+        }
+    }
+    assert!(missed.is_empty(), "{missed:?}");
 }

@@ -5,10 +5,11 @@
 //! > r₁ ≤ q r₀²,  s₁ ≤ p s₀²
 //!
 //! (Deuflhard, Newton Methods for Nonlinear Problems, 2004, §2.1 and §2.2), where p and q hardly change from one point of a branch
-//! to the next. They are measured wherever a first step is followed by an evaluation. Where both bounds, with a margin, are within
-//! the tolerance, the point behind the step is a solution, and need not be evaluated: residuals alone are small far from solutions,
-//! too, where a resonance has little damping. Where contacts begin to slip or to lift off, the matrix changes with the square root
-//! of the motion, and r₁ with r₀ to the power 3/2: residuals from which a step is foreseen are small enough for that, too.
+//! to the next. They are measured wherever a first step is followed by an evaluation, or between two iterations of one correction,
+//! whose second step is then foreseen. Where both bounds, with a margin, are within the tolerance, the point behind the step is a
+//! solution, and need not be evaluated: residuals alone are small far from solutions, too, where a resonance has little damping.
+//! Where contacts begin to slip or to lift off, the matrix changes with the square root of the motion, and r₁ with r₀ to the power
+//! 3/2: residuals from which a step is foreseen are small enough for that, too.
 
 use core::array::from_fn;
 
@@ -16,13 +17,24 @@ use core::array::from_fn;
 /// Kind: tuned; measured on: not recorded.
 const CONTRACTION_MARGIN: f64 = 100.0;
 
-/// Largest residual over the tolerance from which the end is foreseen.
-/// Kind: tuned; measured on: not recorded.
-const CONTRACTION_LARGEST: f64 = 100.0;
+/// Margin of the residual r₀ to the power 3/2 that the onset of a slip within the step would leave.
+/// Kind: tuned; measured on: one slider with 5 and with 64 odd harmonics.
+const ONSET_MARGIN: f64 = 10.0;
 
 /// Ends in a row that are foreseen, after which the contraction is measured again.
 /// Kind: tuned; measured on: not recorded.
 const MOST_FORESEEN: usize = 20;
+
+/// From what the end of a correction may be foreseen.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Foresight {
+    /// It is evaluated.
+    None,
+    /// From two of its own iterations: its tangent is as exact as the last of them is near.
+    WithinCorrection,
+    /// From the corrections before, on the same smooth branch.
+    AlongBranch,
+}
 
 /// Relative residual, and length of the Newton step from this point over the motion.
 pub(super) type Sizes = [f64; 2];
@@ -45,22 +57,35 @@ impl Contraction {
 
     /// Measures the rates from the sizes before and after a step.
     pub fn measure(&mut self, before: Sizes, behind: Sizes) {
-        *self = Self {
+        *self = Self::between(before, behind);
+    }
+
+    /// The contraction by a step, from the sizes before and after it.
+    pub fn between(before: Sizes, behind: Sizes) -> Self {
+        Self {
             rates: from_fn(|i| behind[i] / (before[i] * before[i])),
             foreseen: 0,
-        };
+        }
+    }
+
+    /// Bound of the residual after a step that leaves a share `left` of the sizes; `None` where the residual, or the step that
+    /// would follow, may exceed the tolerance.
+    pub fn foresee_within(&self, sizes: Sizes, left: f64, tolerance: f64) -> Option<f64> {
+        let bounds: Sizes = from_fn(|i| (CONTRACTION_MARGIN * self.rates[i].max(1.0) * sizes[i] + left) * sizes[i]);
+        // A comparison with NaN is false.
+        let is_known =
+            bounds.iter().all(|bound| *bound <= tolerance) && ONSET_MARGIN * sizes[0] * sizes[0].sqrt() <= tolerance;
+        is_known.then_some(bounds[0])
     }
 
     /// Bound of the residual after a step; `None` where the residual, or the step that would follow, may exceed the
     /// tolerance.
     pub fn foresee(&mut self, sizes: Sizes, tolerance: f64) -> Option<f64> {
-        let bounds: Sizes = from_fn(|i| CONTRACTION_MARGIN * self.rates[i].max(1.0) * sizes[i] * sizes[i]);
-        // A comparison with NaN is false.
-        let is_known = bounds.iter().all(|bound| *bound <= tolerance)
-            && sizes[0] <= CONTRACTION_LARGEST * tolerance
-            && self.foreseen < MOST_FORESEEN;
-        self.foreseen += usize::from(is_known);
-        is_known.then_some(bounds[0])
+        let bound = self
+            .foresee_within(sizes, 0.0, tolerance)
+            .filter(|_| self.foreseen < MOST_FORESEEN);
+        self.foreseen += usize::from(bound.is_some());
+        bound
     }
 }
 
@@ -82,7 +107,8 @@ mod tests {
     const METRIC: Metric = Metric { u: 1.0, p: 0.5 };
 
     /// Numbers of points of a branch, met from beside it, and of those that were foreseen.
-    fn followed(model: &Model, samples: usize) -> (usize, usize) {
+    fn followed(model: &Model, samples: usize, foresight: Foresight) -> (usize, usize) {
+        let is_within = foresight == Foresight::WithinCorrection;
         let interrupt = Interrupt::none();
         let options = SolverOptions {
             harmonics: 5,
@@ -95,7 +121,7 @@ mod tests {
         let n = problem.unknowns();
         let mut exact = Corrector::new(n, TOLERANCE, 30).unwrap();
         let mut quick = Corrector::new(n, TOLERANCE, 30).unwrap();
-        quick.set_may_foresee(true);
+        quick.set_foresight(foresight);
         let mut row = vec![0.0; n + 1];
         row[n] = 1.0;
         let (mut v, mut met, mut foreseen) = (vec![0.0; n + 1], 0, 0);
@@ -112,14 +138,16 @@ mod tests {
                 }
             }
             let mut near = v.clone();
-            let size = norm(&v[..n]) * 10.0_f64.powi(-6 - (k % 5) as i32);
+            let farthest = if is_within { -2 } else { -6 };
+            let size = norm(&v[..n]) * 10.0_f64.powi(farthest - (k % 5) as i32);
             for (i, x) in near[..n].iter_mut().enumerate() {
                 *x += size * ((i * 7 + k * 3) as f64).sin();
             }
             let known = quick.contraction;
+            let (begin, steps) = (near.clone(), quick.steps_taken());
             let outcome = quick.correct(&mut problem, &mut near, &row, METRIC, false, &interrupt);
             let Outcome::Converged(found) = outcome.unwrap() else {
-                assert!(quick.contraction.rates[0].is_infinite());
+                assert!(is_within || quick.contraction.rates[0].is_infinite());
                 continue;
             };
             assert!(found.residual <= TOLERANCE);
@@ -129,6 +157,20 @@ mod tests {
                 assert!(known.rates[0].is_finite() && known.foreseen < MOST_FORESEEN);
                 foreseen += 1;
             }
+            if is_within {
+                let (mut other, steps) = (begin, quick.steps_taken() - steps);
+                let of_exact = exact.steps_taken();
+                let evaluated = exact.correct(&mut problem, &mut other, &row, METRIC, false, &interrupt);
+                let Outcome::Converged(evaluated) = evaluated.unwrap() else {
+                    panic!("{k}: no solution where every iteration is evaluated");
+                };
+                // A step whose end is foreseen is taken without an evaluation behind it, and counts all the same.
+                assert_eq!(found.iterations, evaluated.iterations, "{k}");
+                foreseen += usize::from(steps < exact.steps_taken() - of_exact);
+                // Both are the same solution.
+                let apart: Vec<f64> = near[..n].iter().zip(&other).map(|(a, b)| a - b).collect();
+                assert!(norm(&apart) <= 1e-9 * norm(&other[..n]), "{k}");
+            }
             exact.evaluate(&mut problem, &near).unwrap();
             assert!(exact.relative_residual() <= found.residual.max(1e-14), "{k}");
         }
@@ -137,17 +179,28 @@ mod tests {
 
     #[test]
     fn residuals_behind_steps_are_within_their_bounds() {
-        let mut single = structure(1, (0.0, 2e-3));
-        single
-            .add_contact(&Contact::jenkins(1, Some(4), 9.0, 0.3, 1.0))
-            .unwrap();
-        let mut stop = structure(1, (0.0, 2e-2));
-        stop.add_contact(&Contact::unilateral(Some(1), Some(4), 9.0, 0.2))
-            .unwrap();
-        for model in [single, stop] {
-            let (met, foreseen) = followed(&model, 0);
-            assert!(foreseen > 100 && 2 * foreseen < met, "{foreseen} of {met}");
-            assert_eq!(followed(&model, 64).1, 0);
+        // The slider sticks under the largest load, and slips under the others.
+        let sliders = [1.0, 0.3, 0.03].map(|preload| (Contact::jenkins(1, Some(4), 9.0, 0.3, preload), 2e-3));
+        let stop = (Contact::unilateral(Some(1), Some(4), 9.0, 0.2), 2e-2);
+        for (contact, damping) in sliders.into_iter().chain([stop]) {
+            let mut model = structure(1, (0.0, damping));
+            model.add_contact(&contact).unwrap();
+            let (met, foreseen) = followed(&model, 0, Foresight::AlongBranch);
+            assert!(foreseen > 100 && foreseen < met, "{foreseen} of {met}");
+            assert_eq!(followed(&model, 64, Foresight::AlongBranch).1, 0);
+        }
+    }
+
+    #[test]
+    fn a_correction_foresees_its_own_end_where_a_slider_slips() {
+        for preload in [0.3, 0.03, 0.003] {
+            let mut model = structure(1, (0.0, 2e-3));
+            model
+                .add_contact(&Contact::jenkins(1, Some(4), 9.0, 0.3, preload))
+                .unwrap();
+            let (met, foreseen) = followed(&model, 0, Foresight::WithinCorrection);
+            assert!(foreseen > 100 && foreseen < met, "{foreseen} of {met}");
+            assert_eq!(followed(&model, 64, Foresight::WithinCorrection).1, 0);
         }
     }
 }

@@ -18,6 +18,15 @@ pub struct Jet {
     pub dddx: f64,
 }
 
+impl Jet {
+    const ZERO: Self = Self {
+        x: 0.0,
+        dx: 0.0,
+        ddx: 0.0,
+        dddx: 0.0,
+    };
+}
+
 /// Value and three derivatives of a packed signal at τ.
 #[must_use]
 #[inline]
@@ -179,6 +188,10 @@ impl<'a> Approach<'a> {
 /// Kind: rounding.
 const SERIES_LAST_STEP: f64 = 3e-6;
 
+/// Longest last step to a turning point, in the same unit: it leaves 2e-16 of this unit, and the value there feels its square.
+/// Kind: rounding.
+const TURNING_LAST_STEP: f64 = 1e-5;
+
 #[inline]
 fn last_step(set: &HarmonicSet) -> f64 {
     SERIES_LAST_STEP / set.highest_reduced().max(1) as f64
@@ -211,15 +224,20 @@ pub(super) fn turning_point(
     (slope, guess): (f64, f64),
 ) -> (f64, f64) {
     let mut signal = Approach::new(set, packed);
-    let mut last = (0.0, 0.0, 0.0);
-    let tau = safe_halley((a, b), slope, (guess, last_step(set)), |tau| {
+    let mut last = (0.0, Jet::ZERO);
+    let short = TURNING_LAST_STEP / set.highest_reduced().max(1) as f64;
+    let tau = safe_halley((a, b), slope, (guess, short), |tau| {
         let at = signal.at(tau);
-        last = (tau, at.x, at.dx);
+        last = (tau, at);
         [at.dx, at.ddx, at.dddx]
     });
-    // The step from the last jet is short, and x′ falls to zero along it.
-    let (at, x, slope) = last;
-    (tau, x + 0.5 * (tau - at) * slope)
+    let (at, jet) = last;
+    let step = tau - at;
+    // The next term is the fourth power of a short step.
+    (
+        tau,
+        jet.x + step * (jet.dx + step * (jet.ddx / 2.0 + step * jet.dddx / 6.0)),
+    )
 }
 
 #[cfg(test)]
@@ -270,6 +288,31 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_turning_point_is_found_to_rounding_of_its_value() {
+        // cos(τ − c) + e cos 9(τ − c) has its largest value 1 + e at c; guesses are off by less and by more than a last step.
+        let set = HarmonicSet::all(9).unwrap();
+        let mut worst = [0.0_f64; 2];
+        for k in 0..300 {
+            let c = 1.0 + 0.003 * f64::from(k);
+            for e in [0.0, 1e-3, 0.1] {
+                for off in [0.0, 1e-13, 1e-9, 1e-7, 3e-6, 1e-5, 1e-4, 1e-2] {
+                    let mut packed = [0.0; 19];
+                    for (p, size) in [(1, 1.0), (9, e)] {
+                        let angle = f64::from(p) * c;
+                        packed[2 * p as usize - 1] = size * angle.cos();
+                        packed[2 * p as usize] = -size * angle.sin();
+                    }
+                    let bracket = (c - 0.03, c + 0.02);
+                    let slope = jet(&set, &packed, bracket.0).dx;
+                    let (tau, x) = turning_point(&set, &packed, bracket, (slope, c + off));
+                    worst = [worst[0].max((tau - c).abs()), worst[1].max((x - 1.0 - e).abs())];
+                }
+            }
+        }
+        assert!(worst[0] < 2e-15 && worst[1] < 2e-15, "{worst:?}");
     }
 
     #[test]
