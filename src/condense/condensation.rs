@@ -111,6 +111,20 @@ impl Condensed {
         Ok(condensed)
     }
 
+    /// Whether the stuck reference was chosen although a complex one would be quicker: for linear responses.
+    pub(crate) fn serves_linear_responses(&self) -> bool {
+        self.reference == Reference::Stuck && self.coordinates() * self.set.packed_len() <= STUCK_ABOVE
+    }
+
+    /// Number of harmonics whose tables a sweep makes: in linear responses those without force need none.
+    pub(crate) fn harmonics_of_tables(&self) -> usize {
+        if self.serves_linear_responses() {
+            self.blocks.iter().filter(|block| block.has_force()).count()
+        } else {
+            self.blocks.len()
+        }
+    }
+
     /// Attaches the modes or poles of each wave that has such: the flexibility is then a sum over them.
     ///
     /// # Errors

@@ -192,7 +192,12 @@ fn pays(request: &Request<'_>, groups: &[Group], interrupt: &Interrupt<'_>) -> R
     let n = request.ndof();
     let is_estimated = request.options.tolerance > 0.0 && !request.sweep.is_single();
     if n > ALL_UP_TO {
-        return Ok(!is_estimated || !are_all_modes_wanted(request.model, request.numbers.len(), interrupt)?);
+        return Ok(!is_estimated
+            || !are_all_modes_wanted(
+                request.model,
+                (request.numbers.len(), request.contacts.1.len()),
+                interrupt,
+            )?);
     }
     let (per_input, besides) = USUAL_COLUMNS;
     let columns = |group: &Group| (per_input * group.inputs.len() + besides) as f64;
