@@ -206,14 +206,15 @@ impl DynamicStiffness {
     /// Whether rounding of the i-th harmonic's solutions `columns`, under loads of about 1, matters and is cheap to remove.
     pub fn should_refine(&self, condensed: &Condensed, i: usize, columns: &[Complex64]) -> bool {
         let largest = || columns.iter().fold(0.0_f64, |m, z| m.max(z.re.abs()).max(z.im.abs()));
-        self.loses_digits(condensed, (i, columns.len() / condensed.ndof()), largest)
+        self.loses_digits(condensed, i, columns.len() / condensed.ndof(), largest)
     }
 
     /// The same of so many solutions, by their `largest` real or imaginary part.
     pub(crate) fn loses_digits(
         &self,
         condensed: &Condensed,
-        (i, count): (usize, usize),
+        i: usize,
+        count: usize,
         largest: impl Fn() -> f64,
     ) -> bool {
         let entries = condensed.blocks()[i].matrices.reference.values.len();

@@ -63,8 +63,7 @@ impl Workspace {
             return Ok(false);
         };
         let largest = slender.flexibility(&ports, (&mut self.table.value, outputs), (moved, &mut along), interrupt)?;
-        if dynamic.loses_digits(condensed, (i, outputs), || largest)
-            || dynamic.should_refine(condensed, i, &self.columns)
+        if dynamic.loses_digits(condensed, i, outputs, || largest) || dynamic.should_refine(condensed, i, &self.columns)
         {
             self.loses_digits = true;
             return Ok(false);

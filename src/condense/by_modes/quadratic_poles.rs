@@ -123,13 +123,11 @@ fn factors_are_quicker(condensed: &Condensed, block: &HarmonicBlock) -> Result<O
         return Ok(None);
     }
     // A wave serves all harmonics unless their speeds differ.
-    let harmonics = if block.matrices.tied.is_none() {
-        condensed.harmonics_of_tables()
-    } else {
-        1
-    };
-    let size = (harmonics, condensed.coordinates());
-    let are_quicker = are_all_poles_quicker(&block.matrices.reference, work, size)?;
+    let mut tables = condensed.tables_of_sweep();
+    if block.matrices.tied.is_some() {
+        tables.harmonics = 1;
+    }
+    let are_quicker = are_all_poles_quicker(&block.matrices.reference, work, tables)?;
     Ok((!are_quicker).then_some(FlexibilityWay::Sparse))
 }
 

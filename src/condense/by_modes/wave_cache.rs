@@ -8,7 +8,7 @@ use crate::condense::by_modes::refined_modes;
 use crate::condense::by_modes::sum_terms::Source;
 use crate::condense::by_modes::wave_modes::{WaveModes, proportional};
 use crate::condense::by_modes::wave_poles::WavePoles;
-use crate::condense::on_a_basis::basis_outlook::are_all_modes_quicker;
+use crate::condense::on_a_basis::basis_outlook::{SweepTables, are_all_modes_quicker};
 use crate::condense::{Condensed, FlexibilityWay, HarmonicBlock};
 use crate::error::{Result, Status, try_copy, try_push};
 use crate::interrupt::Interrupt;
@@ -249,11 +249,11 @@ impl WaveCache {
             .waves
             .iter()
             .find(|known| known.is_conjugate_of(&reference, &block.matrices.mass));
-        let at = (i, reference, loss_factor);
-        if !self.may_have_all((model, condensed, i), &at.1)? {
+        if !self.may_have_all(model, condensed, i, &reference)? {
             return Ok(None);
         }
-        let Some(found) = modes_of(model, condensed, at, (other, dampers), interrupt)? else {
+        let at = (i, reference, loss_factor, dampers);
+        let Some(found) = modes_of(model, condensed, at, other, interrupt)? else {
             return Ok(None);
         };
         let found = Arc::new(found);
@@ -262,7 +262,7 @@ impl WaveCache {
     }
 
     /// Whether all modes of a harmonic with this K_κ may be computed: there are few, or they take less time than factors.
-    fn may_have_all(&self, (model, condensed, i): (&Model, &Condensed, usize), reference: &Csc) -> Result<bool> {
+    fn may_have_all(&self, model: &Model, condensed: &Condensed, i: usize, reference: &Csc) -> Result<bool> {
         let n = condensed.ndof();
         if has_other_terms(model) {
             return Ok(false);
@@ -278,13 +278,7 @@ impl WaveCache {
         if n <= few || n > ALL_BESIDE_DEAR_FACTORS_UP_TO {
             return Ok(n <= few);
         }
-        let contacts = if condensed.serves_linear_responses() {
-            0
-        } else {
-            condensed.coordinates()
-        };
-        let size = (condensed.harmonics_of_tables(), contacts);
-        are_all_modes_quicker(reference, size)
+        are_all_modes_quicker(reference, condensed.tables_of_sweep())
     }
 }
 
@@ -299,13 +293,13 @@ pub(crate) fn have_modes(model: &Model) -> Result<bool> {
 
 /// Whether a sweep with at least this many harmonics and motions of contacts takes all modes of a structure that is larger than the
 /// general limit for them.
-pub(crate) fn are_all_modes_wanted(model: &Model, size: (usize, usize), interrupt: &Interrupt<'_>) -> Result<bool> {
+pub(crate) fn are_all_modes_wanted(model: &Model, tables: SweepTables, interrupt: &Interrupt<'_>) -> Result<bool> {
     let n = model.structure().ndof();
     if n > ALL_BESIDE_DEAR_FACTORS_UP_TO || has_other_terms(model) || model.structure().whole_loss_factor()?.is_none() {
         return Ok(false);
     }
     let (pattern, [mass, stiffness, damping]) = on_one_pattern(model)?;
-    if !are_all_modes_quicker(&pattern, size)? {
+    if !are_all_modes_quicker(&pattern, tables)? {
         return Ok(false);
     }
     let matrices = [&mass[..], &stiffness, &damping];
@@ -365,8 +359,8 @@ fn elastic_reference(model: &Model, condensed: &Condensed, i: usize) -> Result<O
 fn modes_of(
     model: &Model,
     condensed: &Condensed,
-    (i, reference, loss_factor): (usize, Csc, f64),
-    (other, few): (Option<&Arc<WaveModes>>, bool),
+    (i, reference, loss_factor, few): (usize, Csc, f64, bool),
+    other: Option<&Arc<WaveModes>>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<WaveModes>> {
     let block = &condensed.blocks()[i];

@@ -83,26 +83,33 @@ fn of_factors(entries: usize, n: usize) -> f64 {
     OF_ENTRIES * entries + entries * entries / n as f64
 }
 
-/// Whether all modes of a matrix with this pattern, and tables by them, take less time than tables by its factors for so many harmonics
-/// and motions of contacts along a range.
-pub(crate) fn are_all_modes_quicker(pattern: &Csc, size: (usize, usize)) -> Result<bool> {
+/// The tables of flexibility that a sweep makes at each frequency.
+#[derive(Clone, Copy)]
+pub(crate) struct SweepTables {
+    pub harmonics: usize,
+    /// Relative motions of contacts that each table has.
+    pub contacts: usize,
+}
+
+/// Whether all modes of a matrix with this pattern, and tables by them, take less time than tables by its factors along a range.
+pub(crate) fn are_all_modes_quicker(pattern: &Csc, tables: SweepTables) -> Result<bool> {
     let n = pattern.cols as f64;
-    are_sums_quicker(pattern, (WORK_OF_ALL_MODES * n.powi(3), n), size)
+    are_sums_quicker(pattern, WORK_OF_ALL_MODES * n.powi(3), n, tables)
 }
 
 /// The same for all poles, whose work is that of so many multiplications of a real matrix, its order³.
-pub(crate) fn are_all_poles_quicker(pattern: &Csc, work: f64, size: (usize, usize)) -> Result<bool> {
-    are_sums_quicker(pattern, (WORK_OF_ALL_POLES * work, 2.0 * pattern.cols as f64), size)
+pub(crate) fn are_all_poles_quicker(pattern: &Csc, work: f64, tables: SweepTables) -> Result<bool> {
+    are_sums_quicker(pattern, WORK_OF_ALL_POLES * work, 2.0 * pattern.cols as f64, tables)
 }
 
 /// Whether sums over so many terms, which take the work `once`, take less than factors.
-fn are_sums_quicker(pattern: &Csc, (once, terms): (f64, f64), (harmonics, contacts): (usize, usize)) -> Result<bool> {
-    let columns = contacts as f64;
+fn are_sums_quicker(pattern: &Csc, once: f64, terms: f64, tables: SweepTables) -> Result<bool> {
+    let columns = tables.contacts as f64;
     let of_factors = of_factors(entries_by_degrees(pattern)?, pattern.cols);
     let by_factors = of_factors * (1.0 + columns / COLUMNS_OF_FACTORS);
     let by_sums = WORK_OF_A_SUM * columns * columns * terms;
-    let tables = ALONG_RANGE * harmonics as f64;
-    Ok(once + tables * by_sums <= tables * by_factors)
+    let count = ALONG_RANGE * tables.harmonics as f64;
+    Ok(once + count * by_sums <= count * by_factors)
 }
 
 /// Whether tables of a wheel's flexibility take less time from the waves of the tuned wheel than by factors of all sectors, by their
