@@ -20,6 +20,7 @@ use crate::condense::by_factors::exchanged_motions::{check_rigid, select_exchang
 use crate::condense::by_factors::flexibility::Workspace;
 use crate::condense::by_modes::wave_cache::WaveCache;
 use crate::condense::chosen_blocks::{Chosen, chosen_blocks};
+use crate::condense::on_a_basis::basis_outlook::SweepTables;
 use crate::condense::on_a_basis::wave_reduction::Request;
 use crate::contact::Contact;
 use crate::error::{Result, Status, boxed, try_copy, try_push, try_room, try_vec};
@@ -109,6 +110,26 @@ impl Condensed {
         }
         condensed.set_length(model, unit * scale, &assembled)?;
         Ok(condensed)
+    }
+
+    /// Whether the stuck reference was chosen although a complex one would be quicker: for linear responses.
+    fn serves_linear_responses(&self) -> bool {
+        self.reference == Reference::Stuck && self.coordinates() * self.set.packed_len() <= STUCK_ABOVE
+    }
+
+    /// The tables that a sweep makes: linear responses need the column of the excitation alone, of the harmonics with force.
+    pub(crate) fn tables_of_sweep(&self) -> SweepTables {
+        if self.serves_linear_responses() {
+            SweepTables {
+                harmonics: self.blocks.iter().filter(|block| block.has_force()).count(),
+                contacts: 0,
+            }
+        } else {
+            SweepTables {
+                harmonics: self.blocks.len(),
+                contacts: self.coordinates(),
+            }
+        }
     }
 
     /// Attaches the modes or poles of each wave that has such: the flexibility is then a sum over them.

@@ -230,7 +230,7 @@ impl FrequencyCache {
                 true if may_lack
                     && (condensed.coordinates() > ALL_SLOPES_UP_TO
                         || condensed.tuned().is_some()
-                        || workspace.solves_side_by_side(condensed, i)?) =>
+                        || workspace.solves_side_by_side(condensed)?) =>
                 {
                     Slopes::OfResponse
                 }

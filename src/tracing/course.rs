@@ -10,7 +10,7 @@ use crate::options::Range;
 use crate::tracing::inner_ends::InnerEnds;
 use crate::tracing::passed_folds::PassedFolds;
 use crate::tracing::resonance_bands::ResonanceBands;
-use crate::tracing::resonance_grid::LinearGrid;
+use crate::tracing::resonance_grid::{LinearGrid, PolesBeside};
 
 /// The range to follow, and the solutions requested in it.
 pub(crate) struct Course<'a> {
@@ -80,6 +80,12 @@ impl<'a> BranchTracer<'a> {
     /// The first undamped resonance that a linear stretch has passed and that the forces excite.
     pub fn unbounded_at(&self) -> Option<f64> {
         self.linear_grid.as_ref().and_then(|grid| grid.unbounded)
+    }
+
+    /// The interval between two values of a linear response with the poles next to it.
+    pub(super) fn poles_beside(&self, from: f64, to: f64) -> PolesBeside {
+        let grid = self.linear_grid.as_ref();
+        grid.map_or_else(|| PolesBeside::none(from, to), |grid| grid.poles_beside(from, to))
     }
 
     /// Number of error estimates made.

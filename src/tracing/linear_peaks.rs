@@ -1,7 +1,7 @@
 //! Maxima of a linear response between two neighbouring points of its grid.
 //!
-//! A response z is a sum over poles. Freed of the two that lie next to the interval, q z with q = (p − p₁)(p − p₂) is smooth, and
-//! the cubic through its values and derivatives at both ends tells where to look; solutions there decide.
+//! The cubic through the values and derivatives at both ends of the response freed of the poles next to the interval
+//! ([`PolesBeside`]) tells where to look; solutions there decide.
 
 use crate::continuation::Point;
 use crate::continuation::special_points::SpecialPoint;
@@ -10,6 +10,7 @@ use crate::harmonics::discretised::Traceable;
 use crate::results::SpecialKind;
 use crate::roots::Bracket;
 use crate::tracing::course::BranchTracer;
+use crate::tracing::resonance_grid::PolesBeside;
 use num_complex::Complex64;
 
 /// Relative width of an interval that is rounding.
@@ -80,11 +81,7 @@ fn find_peaks_within(
     left: &mut usize,
 ) -> Result<()> {
     let ends = [low, high].map(|p| (p.parameter(), growth(p)));
-    let poles = tracer
-        .linear_grid
-        .as_ref()
-        .map_or([None; 2], |grid| grid.poles_beside(ends[0].0, ends[1].0));
-    let between = Between::new(low, high, poles);
+    let between = Between::new(low, high, tracer.poles_beside(ends[0].0, ends[1].0));
     let divide = if *left == 0 {
         None
     } else {
@@ -158,42 +155,24 @@ fn stationary(
 
 /// A response between two values: the cubic of q z, from its values and derivatives at both.
 struct Between {
-    from: f64,
-    width: f64,
-    /// Poles next to the interval.
-    poles: [Option<Complex64>; 2],
+    poles: PolesBeside,
     /// Coefficients of q z by powers of the share s of the interval.
     coefficients: [Complex64; 4],
 }
 
 impl Between {
-    fn new(low: &Point, high: &Point, poles: [Option<Complex64>; 2]) -> Self {
-        let (from, width) = (low.parameter(), high.parameter() - low.parameter());
-        let mut between = Self {
-            from,
-            width,
-            poles,
-            coefficients: [Complex64::ZERO; 4],
-        };
+    fn new(low: &Point, high: &Point, poles: PolesBeside) -> Self {
         // q z and d(q z)/ds.
         let [(wa, da), (wb, db)] = [(low, 0.0), (high, 1.0)].map(|(point, s)| {
-            let (q, dq) = between.factor(s);
-            let slope = point.slope * (width / point.tangent[point.tangent.len() - 1]);
+            let (q, dq) = poles.factor(s);
+            let slope = point.slope * (poles.width / point.tangent[point.tangent.len() - 1]);
             (q * point.amplitude, q * slope + dq * point.amplitude)
         });
         let difference = wb - wa;
-        between.coefficients = [wa, da, difference * 3.0 - da * 2.0 - db, da + db - difference * 2.0];
-        between
-    }
-
-    /// q and dq/ds, with the poles in units of the interval.
-    fn factor(&self, s: f64) -> (Complex64, Complex64) {
-        let mut factor = (Complex64::ONE, Complex64::ZERO);
-        for pole in self.poles.into_iter().flatten() {
-            let distance = (self.from - pole) / self.width + s;
-            factor = (factor.0 * distance, factor.1 * distance + factor.0);
+        Self {
+            poles,
+            coefficients: [wa, da, difference * 3.0 - da * 2.0 - db, da + db - difference * 2.0],
         }
-        factor
     }
 
     /// A share of the interval at which a solution decides whether a maximum lies within it, from the derivatives at both
@@ -230,7 +209,7 @@ impl Between {
         let [c0, c1, c2, c3] = self.coefficients;
         let w = c0 + (c1 + (c2 + c3 * s) * s) * s;
         let dw = c1 + (c2 * 2.0 + c3 * (3.0 * s)) * s;
-        let (q, dq) = self.factor(s);
+        let (q, dq) = self.poles.factor(s);
         let z = w / q;
         let dz = (dw - z * dq) / q;
         ((z.conj() * dz).re, z.norm_sqr())

@@ -12,10 +12,10 @@ use crate::hooks::{Hooks, LogLevel};
 use crate::linalg::norm;
 use crate::options::Range;
 use crate::results::SpecialKind;
-use crate::roots::least;
 use crate::tracing::course::{BranchTracer, Stretch, some_unless_lost};
 use crate::tracing::linear_onset::Onset;
 use crate::tracing::linear_peaks::{find_peaks, record_on_line};
+use crate::tracing::linear_shares::{Between, place_beyond};
 use crate::tracing::resonance_grid::LinearGrid;
 use crate::tracing::response_kinks;
 
@@ -25,14 +25,6 @@ enum Next {
     /// The last point with linear contacts, and a parameter value beyond it at which some contact is not linear.
     Onset(Point, f64),
 }
-
-/// Share of its linear range above which the motion of a contact may have a maximum beyond it between two values.
-/// Kind: tuned; measured on: not recorded.
-const LINEAR_STRETCH_NEARLY: f64 = 0.7;
-
-/// Width, over the distance of the two values, at which the place of such a maximum is found.
-/// Kind: tuned; measured on: not recorded.
-const FOUND_SHARE: f64 = 5e-4;
 
 /// Relative distance from an undamped resonance at which its part of the motion dominates, however small its force.
 /// Kind: rounding.
@@ -134,43 +126,14 @@ fn next_linear(tracer: &BranchTracer<'_>, analysis: &mut dyn Traceable, here: &P
     let Some(point) = analysis.linear_at(here, value, tracer.interrupt)? else {
         return onset(tracer, analysis, here, value);
     };
-    let shares = [here, &point].map(|p| analysis.linear_share(p));
-    let [before, after] = shares;
-    let largest = before?.max(after?);
-    if largest.is_nan() || largest <= LINEAR_STRETCH_NEARLY {
-        return Ok(Next::Reached(point));
-    }
-    // The share may have a maximum above 1 between two values.
-    let here_at = here.parameter();
-    let range = [here_at.min(value), here_at.max(value)];
-    let mut beyond = None;
-    let found = least(range, FOUND_SHARE * (range[1] - range[0]), |at| {
-        match share_at(tracer, analysis, here, at) {
-            Ok(Some(share)) => Ok(-share),
-            Ok(None) => {
-                beyond = Some(at);
-                Err(None)
-            }
-            Err(failed) => Err(Some(failed)),
-        }
-    });
-    match (found, beyond) {
-        (Err(Some(failed)), _) => return Err(failed),
-        (_, Some(at)) => return onset(tracer, analysis, here, at),
-        _ => {}
-    }
-    // The problem must be evaluated at the point that is recorded next.
-    Ok(match analysis.linear_at(here, value, tracer.interrupt)? {
-        Some(point) => Next::Reached(point),
-        None => Next::Onset(here.try_clone()?, value),
-    })
-}
-
-/// Largest share of its linear range that a contact uses at a value; `None` if a contact leaves that range.
-fn share_at(tracer: &BranchTracer<'_>, analysis: &mut dyn Traceable, here: &Point, value: f64) -> Result<Option<f64>> {
-    match analysis.linear_at(here, value, tracer.interrupt)? {
-        Some(point) => analysis.linear_share(&point).map(Some),
-        None => Ok(None),
+    match place_beyond(tracer, analysis, [here, &point])? {
+        Between::Linear => Ok(Next::Reached(point)),
+        Between::Beyond(at) => onset(tracer, analysis, here, at),
+        // The problem must be evaluated at the point that is recorded next.
+        Between::LinearAfterSearch => Ok(match analysis.linear_at(here, value, tracer.interrupt)? {
+            Some(point) => Next::Reached(point),
+            None => Next::Onset(here.try_clone()?, value),
+        }),
     }
 }
 

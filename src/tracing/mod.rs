@@ -22,6 +22,7 @@ pub(crate) mod inner_ends;
 mod linear_onset;
 mod linear_peaks;
 pub(crate) mod linear_resonances;
+mod linear_shares;
 mod linear_stretch;
 mod passed_folds;
 mod points_between;

@@ -66,14 +66,18 @@ impl LinearGrid {
             .map(|pole| pole.omega)
     }
 
-    /// The complex poles next to an interval, below and above it.
-    pub fn poles_beside(&self, from: f64, to: f64) -> [Option<Complex64>; 2] {
-        let above = self.poles.partition_point(|pole| pole.omega < to);
-        let below = self.poles.partition_point(|pole| pole.omega <= from).checked_sub(1);
-        [below, Some(above)].map(|place| {
+    /// The complex poles next to the interval between two values, below and above it.
+    pub fn poles_beside(&self, from: f64, to: f64) -> PolesBeside {
+        let above = self.poles.partition_point(|pole| pole.omega < from.max(to));
+        let below = self.poles.partition_point(|pole| pole.omega <= from.min(to));
+        let poles = [below.checked_sub(1), Some(above)].map(|place| {
             let pole = self.poles.get(place?)?;
             Some(Complex64::new(pole.omega, pole.half_width))
-        })
+        });
+        PolesBeside {
+            poles,
+            ..PolesBeside::none(from, to)
+        }
     }
 
     /// The next value of the grid after `value`, or a nearer one at the distance `most`.
@@ -84,6 +88,40 @@ impl LinearGrid {
         }
         let next = self.values.partition_point(|&x| x < value);
         next.checked_sub(1).map(|i| self.values[i].max(value - most))
+    }
+}
+
+/// An interval with the poles next to it. A response z is a sum over poles: freed of these two, q z with q = (p − p₁)(p − p₂) is
+/// smooth over the interval.
+pub(crate) struct PolesBeside {
+    pub from: f64,
+    pub width: f64,
+    poles: [Option<Complex64>; 2],
+}
+
+impl PolesBeside {
+    /// An interval whose poles are not known: q = 1.
+    pub fn none(from: f64, to: f64) -> Self {
+        Self {
+            from,
+            width: to - from,
+            poles: [None; 2],
+        }
+    }
+
+    /// The value of the parameter at a share s of the interval.
+    pub fn at(&self, s: f64) -> f64 {
+        self.from + s * self.width
+    }
+
+    /// q and dq/ds at a share s of the interval, in units of its width.
+    pub fn factor(&self, s: f64) -> (Complex64, Complex64) {
+        let mut factor = (Complex64::ONE, Complex64::ZERO);
+        for pole in self.poles.into_iter().flatten() {
+            let distance = (self.from - pole) / self.width + s;
+            factor = (factor.0 * distance, factor.1 * distance + factor.0);
+        }
+        factor
     }
 }
 

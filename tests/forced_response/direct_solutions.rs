@@ -7,6 +7,7 @@ use crate::common::friction::Random;
 use crate::common::{harmonics, omega_range};
 use faer::Mat;
 use faer::linalg::solvers::Solve;
+use hbvib::internals::FlexibilityWay;
 use hbvib::{
     Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Part, SolverOptions, Speed, forced_response,
 };
@@ -247,8 +248,8 @@ fn matrices(random: &mut Random, n: usize, shape: Shape) -> (DMatrix<f64>, DMatr
     (mass, stiffness)
 }
 
-/// Sweeps a structure, and compares each stored point with a direct solution.
-fn compare(case: &Case) {
+/// Sweeps a structure, compares each stored point with a direct solution, and returns the way to its flexibility.
+fn compare(case: &Case) -> FlexibilityWay {
     let (start, end) = case.range;
     let at = [0.3, 0.77].map(|x| start + (end - start) * x);
     let forced = ForcedOptions {
@@ -285,6 +286,27 @@ fn compare(case: &Case) {
             "{named}: point {point} at {omega} is off by {:.1e}",
             off / size
         );
+    }
+    branch.reduction().flexibility_way
+}
+
+/// One size below and one above that at which modes or poles begin to take longer than factors along a sweep, by harmonics and contacts.
+#[test]
+fn both_ways_beside_a_change_of_the_way_are_direct_solutions() {
+    use Damping::{Gyroscopic, Proportional};
+    use FlexibilityWay::{Modes, Poles, Sparse};
+    for (damping, harmonics, contacts, ways) in [
+        (Proportional, 1, 1, [(215, Modes), (233, Sparse)]),
+        (Proportional, 1, 30, [(215, Modes), (233, Sparse)]),
+        (Proportional, 1, 5, [(230, Modes), (252, Sparse)]),
+        (Gyroscopic, 9, 1, [(60, Poles), (150, Sparse)]),
+    ] {
+        for (n, way) in ways {
+            let mut case = Case::new(90 + n as u64, n, Shape::Chain, damping);
+            case.harmonics = harmonics;
+            case.contacts = (0..contacts).map(|i| 2 + i * (n - 4) / contacts).collect();
+            assert_eq!(compare(&case), way, "{n}: {harmonics} harmonics, {contacts} contacts");
+        }
     }
 }
 

@@ -148,7 +148,12 @@ fn with_detail(
     };
     let with_exchange = SolverOptions { exchange, ..*solver };
     let outcome = with_samples(&with_exchange, |solver| {
-        let own = SharedWaves::default();
+        let is_fixed = solver.tolerance == 0.0 && !solver.estimate_error && solver.stability.is_none();
+        let own = if is_fixed {
+            SharedWaves::of_one_sweep()
+        } else {
+            SharedWaves::default()
+        };
         let waves = waves.unwrap_or(&own);
         follow(
             model,

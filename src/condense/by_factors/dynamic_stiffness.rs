@@ -186,11 +186,10 @@ impl DynamicStiffness {
         self.tuned.as_deref_mut().filter(|_| self.tuned_at.is_some())
     }
 
-    /// The current factors, if they solve many right sides side by side, and a table of so many columns is not to be refined.
-    pub(crate) fn slender(&mut self, condensed: &Condensed, i: usize, columns: usize) -> Option<&mut SlenderLu> {
-        let may_refine = condensed.blocks()[i].matrices.reference.values.len() * columns <= CHEAP_TO_REFINE;
+    /// The current factors, if they solve many right sides side by side.
+    pub(crate) fn slender(&mut self) -> Option<&mut SlenderLu> {
         match &mut self.plain {
-            Some(plain) if self.tuned_at.is_none() && !may_refine => plain.factor.slender(),
+            Some(plain) if self.tuned_at.is_none() => plain.factor.slender(),
             _ => None,
         }
     }
@@ -206,15 +205,25 @@ impl DynamicStiffness {
 
     /// Whether rounding of the i-th harmonic's solutions `columns`, under loads of about 1, matters and is cheap to remove.
     pub fn should_refine(&self, condensed: &Condensed, i: usize, columns: &[Complex64]) -> bool {
+        let largest = || columns.iter().fold(0.0_f64, |m, z| m.max(z.re.abs()).max(z.im.abs()));
+        self.loses_digits(condensed, i, columns.len() / condensed.ndof(), largest)
+    }
+
+    /// The same of so many solutions, by their `largest` real or imaginary part.
+    pub(crate) fn loses_digits(
+        &self,
+        condensed: &Condensed,
+        i: usize,
+        count: usize,
+        largest: impl Fn() -> f64,
+    ) -> bool {
         let entries = condensed.blocks()[i].matrices.reference.values.len();
-        let count = columns.len() / condensed.ndof();
-        let size = |z: &Complex64| z.re.abs().max(z.im.abs());
         let stiff = if entries * count <= QUICK_TO_REFINE {
             STIFF_FOR_DIGITS
         } else {
             STIFF_FOR_FACTORS
         };
-        entries * count <= CHEAP_TO_REFINE && columns.iter().any(|x| self.largest * size(x) > stiff)
+        entries * count <= CHEAP_TO_REFINE && self.largest * largest() > stiff
     }
 
     /// Solves Z X = B (or Zᵀ X = B) in place. The current factors must belong to the i-th harmonic at `omega`.

@@ -12,22 +12,22 @@ use num_complex::Complex64;
 const SIDE_BY_SIDE_FROM: usize = 8;
 
 impl Workspace {
-    /// Whether the factors of the i-th carried harmonic solve the columns of all contacts side by side. All slopes then take longer than
-    /// the factors that those along one motion need.
+    /// Whether the factors solve the columns of all contacts side by side. All slopes then take longer than the factors that those along
+    /// one motion need.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub(crate) fn solves_side_by_side(&mut self, condensed: &Condensed, i: usize) -> Result<bool> {
+    pub(crate) fn solves_side_by_side(&mut self, condensed: &Condensed) -> Result<bool> {
         let coordinates = condensed.coordinates();
-        if coordinates < SIDE_BY_SIDE_FROM {
+        if coordinates < SIDE_BY_SIDE_FROM || self.loses_digits {
             return Ok(false);
         }
-        let dynamic = made(&mut self.dynamic, condensed)?;
-        Ok(dynamic.slender(condensed, i, coordinates + 1).is_some())
+        Ok(made(&mut self.dynamic, condensed)?.slender().is_some())
     }
 
     /// Fills the table, but for slopes other than those of the response, with factors that solve many right sides side by side, and keeps
-    /// the column of the excitation alone; `false` where the current factors are not such.
+    /// the column of the excitation alone; `false` where the current factors are not such, or solutions lose digits that refined
+    /// columns have, here or earlier.
     pub(crate) fn tabulate_side_by_side(
         &mut self,
         condensed: &Condensed,
@@ -36,8 +36,7 @@ impl Workspace {
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
         let (n, coordinates) = (condensed.ndof(), condensed.coordinates());
-        let is_slender = made(&mut self.dynamic, condensed)?.slender(condensed, i, coordinates + 1);
-        if coordinates < SIDE_BY_SIDE_FROM || is_slender.is_none() {
+        if !self.solves_side_by_side(condensed)? {
             return Ok(false);
         }
         self.table.slope.fill(Complex64::ZERO);
@@ -60,10 +59,15 @@ impl Workspace {
         let outputs = coordinates + 1;
         let mut along = try_vec(if of_response { outputs } else { 0 }, Complex64::ZERO, CONTEXT)?;
         let moved = if of_response { &self.products[..n] } else { &[] };
-        let Some(slender) = dynamic.slender(condensed, i, outputs) else {
+        let Some(slender) = dynamic.slender() else {
             return Ok(false);
         };
-        slender.flexibility(&ports, (&mut self.table.value, outputs), (moved, &mut along), interrupt)?;
+        let largest = slender.flexibility(&ports, (&mut self.table.value, outputs), (moved, &mut along), interrupt)?;
+        if dynamic.loses_digits(condensed, i, outputs, || largest) || dynamic.should_refine(condensed, i, &self.columns)
+        {
+            self.loses_digits = true;
+            return Ok(false);
+        }
         let last = coordinates * outputs;
         read(
             block.motions.rows.iter().chain([&self.responses[i]]),

@@ -18,12 +18,12 @@
 use crate::condense::blocks::harmonic_block::{Artificial, HarmonicBlock};
 use crate::condense::by_modes::refined_modes::{self, dense};
 use crate::condense::by_modes::wave_poles::{Key, WavePoles};
+use crate::condense::on_a_basis::basis_outlook::are_all_poles_quicker;
 use crate::condense::{Condensed, FlexibilityWay};
 use crate::error::{Result, Status, try_copy, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::complex_products::{self, multiply_adjoint};
 use crate::linalg::dense::general_eigen;
-use crate::linalg::factors::cholesky::entries_by_degrees;
 use crate::linalg::factors::factor::is_dense;
 use crate::linalg::factors::lu::Lu;
 use crate::linalg::libraries::DMatrix;
@@ -40,16 +40,6 @@ const MOST_POLE_WORK: f64 = 900.0 * 900.0 * 900.0;
 /// Work of a complex matrix over that of a real one.
 /// Kind: tuned; measured on: not recorded.
 const WORK_OF_COMPLEX: f64 = 3.0;
-
-/// Points of a sweep for which the poles must pay.
-/// Kind: tuned; measured on: not recorded.
-const QUADRATIC_POLES_POINTS: f64 = 300.0;
-
-/// Operations of the QR iteration over order³, and of a sparse factorisation, where it takes as long as so many, over the entries of
-/// its factor.
-/// Kind: tuned; measured on: not recorded.
-const OPERATIONS_OF_POLES: f64 = 25.0;
-const OPERATIONS_OF_ENTRY: f64 = 1000.0;
 
 /// μ over the largest below which a motion has no mass.
 /// Kind: rounding.
@@ -133,14 +123,12 @@ fn factors_are_quicker(condensed: &Condensed, block: &HarmonicBlock) -> Result<O
         return Ok(None);
     }
     // A wave serves all harmonics unless their speeds differ.
-    let harmonics = if block.matrices.tied.is_none() {
-        condensed.blocks().len()
-    } else {
-        1
-    };
-    let entries = entries_by_degrees(&block.matrices.reference)? as f64;
-    let of_factors = QUADRATIC_POLES_POINTS * harmonics as f64 * OPERATIONS_OF_ENTRY * entries;
-    Ok((OPERATIONS_OF_POLES * work > of_factors).then_some(FlexibilityWay::Sparse))
+    let mut tables = condensed.tables_of_sweep();
+    if block.matrices.tied.is_some() {
+        tables.harmonics = 1;
+    }
+    let are_quicker = are_all_poles_quicker(&block.matrices.reference, work, tables)?;
+    Ok((!are_quicker).then_some(FlexibilityWay::Sparse))
 }
 
 /// One wave in the modes of its undamped part.

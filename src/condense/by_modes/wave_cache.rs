@@ -8,7 +8,7 @@ use crate::condense::by_modes::refined_modes;
 use crate::condense::by_modes::sum_terms::Source;
 use crate::condense::by_modes::wave_modes::{WaveModes, proportional};
 use crate::condense::by_modes::wave_poles::WavePoles;
-use crate::condense::on_a_basis::basis_outlook::are_all_modes_quicker;
+use crate::condense::on_a_basis::basis_outlook::{SweepTables, are_all_modes_quicker};
 use crate::condense::{Condensed, FlexibilityWay, HarmonicBlock};
 use crate::error::{Result, Status, try_copy, try_push};
 use crate::interrupt::Interrupt;
@@ -22,9 +22,14 @@ use num_complex::Complex64;
 use std::cell::Cell;
 use std::sync::Arc;
 
-/// Degrees of freedom up to which a sweep computes all modes: they take as long as three to twelve complex factorisations.
+/// Degrees of freedom up to which all modes are computed where other harmonics than those of one sweep may need them: they take as long as
+/// three to twelve complex factorisations.
 /// Kind: tuned; measured on: not recorded.
 pub(crate) const ALL_UP_TO: usize = 600;
+
+/// The same of one sweep with fixed harmonics.
+/// Kind: tuned; measured on: chains of 99 to 219 with 1 to 30 contacts.
+const ALL_OF_FEW_UP_TO: usize = 100;
 
 /// The same of a structure on a basis, whose matrices are full, so that a factorisation at each frequency costs n³ as its modes do: a sweep
 /// over a sector with 61 contacts in a plane has 736 to 920 coordinates.
@@ -53,6 +58,8 @@ pub struct WaveCache {
     has_no_modes: bool,
     without_poles: Option<FlexibilityWay>,
     has_many_dampers: bool,
+    /// Whether the modes serve one sweep with the harmonics of its model alone.
+    is_of_one_sweep: bool,
 }
 
 /// Z_κ at zero frequency and M of a block, with the modes of its wave.
@@ -70,6 +77,18 @@ pub struct SharedWaves {
 }
 
 impl SharedWaves {
+    /// Waves that serve one sweep with the harmonics of its model alone, so that modes must take less time than its factors.
+    pub fn of_one_sweep() -> Self {
+        let waves = WaveCache {
+            is_of_one_sweep: true,
+            ..WaveCache::default()
+        };
+        Self {
+            waves: Cell::new(waves),
+            ..Self::default()
+        }
+    }
+
     /// The condensed model with the modes of its waves, as [`Condensed::attach_modes`].
     pub fn attach(&self, model: &Model, mut condensed: Condensed, interrupt: &Interrupt<'_>) -> Result<Condensed> {
         let mut waves = self.waves.take();
@@ -230,6 +249,9 @@ impl WaveCache {
             .waves
             .iter()
             .find(|known| known.is_conjugate_of(&reference, &block.matrices.mass));
+        if !self.may_have_all(model, condensed, i, &reference)? {
+            return Ok(None);
+        }
         let at = (i, reference, loss_factor, dampers);
         let Some(found) = modes_of(model, condensed, at, other, interrupt)? else {
             return Ok(None);
@@ -237,6 +259,26 @@ impl WaveCache {
         let found = Arc::new(found);
         try_push(&mut self.waves, Arc::clone(&found), CONTEXT)?;
         Ok(Some(found))
+    }
+
+    /// Whether all modes of a harmonic with this K_κ may be computed: there are few, or they take less time than factors.
+    fn may_have_all(&self, model: &Model, condensed: &Condensed, i: usize, reference: &Csc) -> Result<bool> {
+        let n = condensed.ndof();
+        if has_other_terms(model) {
+            return Ok(false);
+        }
+        if condensed.blocks()[i].view.is_some() {
+            return Ok(n <= ALL_OF_BASIS_UP_TO);
+        }
+        let few = if self.is_of_one_sweep {
+            ALL_OF_FEW_UP_TO
+        } else {
+            ALL_UP_TO
+        };
+        if n <= few || n > ALL_BESIDE_DEAR_FACTORS_UP_TO {
+            return Ok(n <= few);
+        }
+        are_all_modes_quicker(reference, condensed.tables_of_sweep())
     }
 }
 
@@ -249,15 +291,15 @@ pub(crate) fn have_modes(model: &Model) -> Result<bool> {
     Ok(proportional([&mass, &stiffness, &damping]).is_some())
 }
 
-/// Whether a sweep with at least this many harmonics takes all modes of a structure that is larger than the general
-/// limit for them.
-pub(crate) fn are_all_modes_wanted(model: &Model, harmonics: usize, interrupt: &Interrupt<'_>) -> Result<bool> {
+/// Whether a sweep with at least this many harmonics and motions of contacts takes all modes of a structure that is larger than the
+/// general limit for them.
+pub(crate) fn are_all_modes_wanted(model: &Model, tables: SweepTables, interrupt: &Interrupt<'_>) -> Result<bool> {
     let n = model.structure().ndof();
     if n > ALL_BESIDE_DEAR_FACTORS_UP_TO || has_other_terms(model) || model.structure().whole_loss_factor()?.is_none() {
         return Ok(false);
     }
     let (pattern, [mass, stiffness, damping]) = on_one_pattern(model)?;
-    if !are_all_modes_quicker(&pattern, harmonics)? {
+    if !are_all_modes_quicker(&pattern, tables)? {
         return Ok(false);
     }
     let matrices = [&mass[..], &stiffness, &damping];
@@ -323,16 +365,6 @@ fn modes_of(
 ) -> Result<Option<WaveModes>> {
     let block = &condensed.blocks()[i];
     let n = condensed.ndof();
-    let most = if block.view.is_some() {
-        ALL_OF_BASIS_UP_TO
-    } else {
-        ALL_UP_TO
-    };
-    let is_quick = || are_all_modes_quicker(&reference, condensed.blocks().len());
-    let may = n <= most || (block.view.is_none() && n <= ALL_BESIDE_DEAR_FACTORS_UP_TO && is_quick()?);
-    if !may || has_other_terms(model) {
-        return Ok(None);
-    }
     let Some(springs) = springs(model, condensed, block)? else {
         return Ok(None);
     };

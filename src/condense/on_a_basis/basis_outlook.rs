@@ -24,9 +24,15 @@ const OF_RESONANCE: usize = 2;
 const OF_COLUMNS: f64 = 2.5;
 const OF_ENTRIES: f64 = 6.0;
 
-/// Work of all modes over n³, in the same.
-/// Kind: tuned; measured on: times of grids of 608 to 2,000.
+/// Work of all modes over n³, and of all poles over their order³, in the same.
+/// Kind: tuned; measured on: times of grids of 608 to 2,000, and of chains of 60.
 const WORK_OF_ALL_MODES: f64 = 0.2;
+const WORK_OF_ALL_POLES: f64 = 2.0;
+
+/// Columns of contacts whose table takes as long as its factors; and work of a sum over modes over its multiplications, in the same.
+/// Kind: tuned; measured on: chains of 300 to 620 with 1, 8, 30 and 100 contacts and 1 to 31 harmonics.
+const COLUMNS_OF_FACTORS: f64 = 20.0;
+const WORK_OF_A_SUM: f64 = 0.026;
 
 /// Factorisations of each harmonic along a range, of 150 points or so, and at one frequency. Usual sweeps have 30 to 300.
 /// Kind: tuned; measured on: not recorded.
@@ -66,12 +72,33 @@ fn of_factors(entries: usize, n: usize) -> f64 {
     OF_ENTRIES * entries + entries * entries / n as f64
 }
 
-/// Whether all modes of a matrix with this pattern take less time than its factors for so many harmonics along a
-/// range.
-pub(crate) fn are_all_modes_quicker(pattern: &Csc, harmonics: usize) -> Result<bool> {
-    let n = pattern.cols;
-    let of_factors = of_factors(entries_by_degrees(pattern)?, n);
-    Ok(WORK_OF_ALL_MODES * (n as f64).powi(3) <= ALONG_RANGE * harmonics as f64 * of_factors)
+/// The tables of flexibility that a sweep makes at each frequency.
+#[derive(Clone, Copy)]
+pub(crate) struct SweepTables {
+    pub harmonics: usize,
+    /// Relative motions of contacts that each table has.
+    pub contacts: usize,
+}
+
+/// Whether all modes of a matrix with this pattern, and tables by them, take less time than tables by its factors along a range.
+pub(crate) fn are_all_modes_quicker(pattern: &Csc, tables: SweepTables) -> Result<bool> {
+    let n = pattern.cols as f64;
+    are_sums_quicker(pattern, WORK_OF_ALL_MODES * n.powi(3), n, tables)
+}
+
+/// The same for all poles, whose work is that of so many multiplications of a real matrix, its order³.
+pub(crate) fn are_all_poles_quicker(pattern: &Csc, work: f64, tables: SweepTables) -> Result<bool> {
+    are_sums_quicker(pattern, WORK_OF_ALL_POLES * work, 2.0 * pattern.cols as f64, tables)
+}
+
+/// Whether sums over so many terms, which take the work `once`, take less than factors.
+fn are_sums_quicker(pattern: &Csc, once: f64, terms: f64, tables: SweepTables) -> Result<bool> {
+    let columns = tables.contacts as f64;
+    let of_factors = of_factors(entries_by_degrees(pattern)?, pattern.cols);
+    let by_factors = of_factors * (1.0 + columns / COLUMNS_OF_FACTORS);
+    let by_sums = WORK_OF_A_SUM * columns * columns * terms;
+    let count = ALONG_RANGE * tables.harmonics as f64;
+    Ok(once + count * by_sums <= count * by_factors)
 }
 
 /// Whether tables of a wheel's flexibility take less time from the waves of the tuned wheel than by factors of all sectors, by their

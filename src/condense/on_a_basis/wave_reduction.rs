@@ -7,7 +7,7 @@
 use crate::condense::HarmonicBlock;
 use crate::condense::blocks::contact_classes::ContactClasses;
 use crate::condense::by_modes::wave_cache::{ALL_UP_TO, are_all_modes_wanted};
-use crate::condense::on_a_basis::basis_outlook::USUAL_COLUMNS;
+use crate::condense::on_a_basis::basis_outlook::{SweepTables, USUAL_COLUMNS};
 use crate::condense::on_a_basis::certificate::{Certificate, certificate};
 use crate::condense::on_a_basis::krylov_wave::{MOST_BLOCKS, MOST_COLUMNS, prepare};
 use crate::condense::on_a_basis::reduced_block::reduced_block;
@@ -192,7 +192,11 @@ fn pays(request: &Request<'_>, groups: &[Group], interrupt: &Interrupt<'_>) -> R
     let n = request.ndof();
     let is_estimated = request.options.tolerance > 0.0 && !request.sweep.is_single();
     if n > ALL_UP_TO {
-        return Ok(!is_estimated || !are_all_modes_wanted(request.model, request.numbers.len(), interrupt)?);
+        let tables = SweepTables {
+            harmonics: request.numbers.len(),
+            contacts: request.contacts.1.len(),
+        };
+        return Ok(!is_estimated || !are_all_modes_wanted(request.model, tables, interrupt)?);
     }
     let (per_input, besides) = USUAL_COLUMNS;
     let columns = |group: &Group| (per_input * group.inputs.len() + besides) as f64;

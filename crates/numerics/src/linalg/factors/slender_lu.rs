@@ -205,7 +205,8 @@ impl SlenderLu {
     }
 
     /// The flexibility R A⁻¹ Rᴴ between the `ports` R, column after column into `table`, whose columns begin `stride` apart, and
-    /// into `moved.1` the products qᵀ A⁻¹ Rᴴ with a vector q = `moved.0`, unless that is empty.
+    /// into `moved.1` the products qᵀ A⁻¹ Rᴴ with a vector q = `moved.0`, unless that is empty. Returns the largest real or imaginary
+    /// part of A⁻¹ Rᴴ.
     ///
     /// # Errors
     /// `Singular` where a solution is not finite; `OutOfMemory`; `StoppedByCaller`.
@@ -215,7 +216,7 @@ impl SlenderLu {
         (table, stride): (&mut [Complex64], usize),
         moved: (&[Complex64], &mut [Complex64]),
         interrupt: &Interrupt<'_>,
-    ) -> Result<()> {
+    ) -> Result<f64> {
         if self.lanes.is_empty() {
             self.lanes = try_vec(self.n, [[0.0; SIDES]; 2], CONTEXT)?;
         }
@@ -232,7 +233,7 @@ impl SlenderLu {
         (table, stride): (&mut [Complex64], usize),
         (weights, products): (&[Complex64], &mut [Complex64]),
         interrupt: &Interrupt<'_>,
-    ) -> Result<()> {
+    ) -> Result<f64> {
         let columns = self.order_of_columns()?;
         let Some(symbolic) = &self.symbolic else {
             return fail!(Internal, "a sparse matrix was not factored");
@@ -241,6 +242,7 @@ impl SlenderLu {
         let count = |of: SparseColMatRef<'_, usize, Complex64>| of.col_ptr()[self.n];
         let entries = count(self.factors.l_factor_unsorted()) + count(self.factors.u_factor_unsorted());
         let tables = table.chunks_mut(SIDES * stride.max(1));
+        let mut largest = 0.0_f64;
         for ((k, inputs), table) in ports.chunks(SIDES).enumerate().zip(tables) {
             interrupt.check_before(OPERATIONS_OF_AN_ENTRY * (entries * inputs.len()) as u64)?;
             lanes.fill([[0.0; SIDES]; 2]);
@@ -256,6 +258,7 @@ impl SlenderLu {
                 upper: self.factors.u_factor_unsorted(),
                 lanes,
             });
+            largest = largest.max(self.arch.dispatch(Largest(lanes)));
             for (row, output) in ports.iter().enumerate() {
                 let terms = output.iter().map(|&(p, a)| (a, &lanes[places[p]]));
                 let sum = self.arch.dispatch(Weighted(terms));
@@ -275,7 +278,7 @@ impl SlenderLu {
                 return fail!(Singular, "a linear system has no finite solution");
             }
         }
-        Ok(())
+        Ok(largest)
     }
 }
 
@@ -295,6 +298,24 @@ impl<'l, I: Iterator<Item = (Complex64, &'l Lanes)>> WithSimd for Weighted<I> {
             }
         }
         sum
+    }
+}
+
+/// The largest modulus of a number in the lanes.
+struct Largest<'a>(&'a [Lanes]);
+
+impl WithSimd for Largest<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) -> f64 {
+        let mut largest = [0.0_f64; SIDES];
+        for part in self.0.iter().flatten() {
+            for (largest, x) in largest.iter_mut().zip(part) {
+                *largest = largest.max(x.abs());
+            }
+        }
+        largest.into_iter().fold(0.0, f64::max)
     }
 }
 
