@@ -39,7 +39,7 @@ const FORCED_RESPONSE_ERROR_TABLES: usize = 4;
 /// Multiple of the lowest harmonic to which a point is extended at least where that costs little: where a resonance is narrow, changes
 /// by a few harmonics cancel each other.
 /// Kind: tuned; measured on: chains of 6 to 300 masses at the onset of slip, damping ratios 1e-4 to 3e-2.
-const FEW: usize = 15;
+const FEW_HARMONICS: usize = 15;
 
 /// Share of the work of an estimate that told nothing that one of the same motion with more harmonics may take.
 /// Kind: tuned; measured on: not recorded.
@@ -218,7 +218,7 @@ impl<'a> ForcedEstimator<'a> {
         } else {
             least
         };
-        let few = carried_harmonics::carried_from(set, FEW * set.base());
+        let few = carried_harmonics::carried_from(set, FEW_HARMONICS * set.base());
         let samples = extended_options(&self.options, few).samples;
         let reach = if few > reach && Sizes::extended(solved.condensed, few, samples).is_cheap(work) {
             few

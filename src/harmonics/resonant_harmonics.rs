@@ -29,7 +29,7 @@ const COUNTS_BESIDE: f64 = 0.3;
 /// Modes on each side of a harmonic whose terms are summed: close modes resonate together, and all those below act alike beyond the
 /// highest.
 /// Kind: cap.
-const BESIDE: usize = 16;
+const MODES_BESIDE: usize = 16;
 
 /// Frequency over that of the highest mode up to which harmonics are looked at.
 /// Kind: tuned; measured on: the chains of `COUNTS_BESIDE`.
@@ -167,10 +167,10 @@ impl ResonantHarmonics {
         }
         let first = carried_from(set, sought.own + 1);
         let first = (first..=carried_from(set, 2 * sought.own + 1).max(first + step)).step_by(step);
-        let beside = first.map(|k| self.size(condensed, (k, omega), usize::MAX) / (k as f64).powi(2));
+        let beside = first.map(|k| self.size(condensed, k, omega, usize::MAX) / (k as f64).powi(2));
         let beside = COUNTS_BESIDE * beside.fold(0.0, f64::max);
         while h > sought.from {
-            let size = self.size(condensed, (h, omega), BESIDE);
+            let size = self.size(condensed, h, omega, MODES_BESIDE);
             if size >= COMPLIANT || (beside > 0.0 && size >= beside * (h as f64).powi(2)) {
                 return h;
             }
@@ -183,7 +183,7 @@ impl ResonantHarmonics {
     }
 
     /// Σ_c kt_c |G_cc| in a harmonic by so many modes on each side of it; 0 where its modes are not known.
-    fn size(&self, condensed: &Condensed, (h, omega): (usize, f64), beside: usize) -> f64 {
+    fn size(&self, condensed: &Condensed, h: usize, omega: f64, beside: usize) -> f64 {
         let nu = h as f64 * omega;
         let Some(wave) = block_of(condensed, h).and_then(|i| self.waves.get(i)) else {
             return 0.0;

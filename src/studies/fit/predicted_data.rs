@@ -362,7 +362,7 @@ impl Predictor<'_> {
             return Ok(None);
         }
         (into.values[2 * i], into.values[2 * i + 1]) = (found.value.re, found.value.im);
-        let slopes = self.slopes_of((parameters, numbers), &found.values, &found.reasons, into.theta)?;
+        let slopes = self.slopes_of(parameters, numbers, &found.values, &found.reasons, into.theta)?;
         for (slope, &k) in slopes.iter().zip(numbers) {
             into.slopes[2 * i * p + k] = slope.re;
             into.slopes[(2 * i + 1) * p + k] = slope.im;
@@ -374,7 +374,8 @@ impl Predictor<'_> {
     /// exist: at an onset of slip and in a fold the search goes on without it.
     fn slopes_of(
         &self,
-        (parameters, numbers): (&[Parameter<'_>], &[usize]),
+        parameters: &[Parameter<'_>],
+        numbers: &[usize],
         of: &[Complex64],
         reasons: &[Reason],
         theta: &[f64],
@@ -416,7 +417,7 @@ impl Predictor<'_> {
         for (of, &value) in of.iter_mut().zip(&found.values) {
             *of = value.into();
         }
-        let slopes = self.slopes_of((parameters, numbers), &of, &found.reasons, into.theta)?;
+        let slopes = self.slopes_of(parameters, numbers, &of, &found.reasons, into.theta)?;
         for (slope, &k) in slopes.iter().zip(numbers) {
             into.slopes[row * p + k] = slope.re;
         }

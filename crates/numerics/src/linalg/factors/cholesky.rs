@@ -4,7 +4,6 @@
 use crate::error::{Error, Result, fail, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::elimination_order::nested_dissection;
-use crate::linalg::factors::inertia::{Below, negative_pivots};
 use crate::linalg::sparse_storage::row_index::widened;
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::linalg::sparse_storage::triangle::{Entry, Triangle};
@@ -123,8 +122,8 @@ fn entries(a: &Csc, order: Order) -> Result<usize> {
 /// Factors of one matrix.
 pub struct Cholesky<T> {
     n: usize,
-    symbolic: SymbolicCholesky<usize>,
-    values: Vec<T>,
+    pub(super) symbolic: SymbolicCholesky<usize>,
+    pub(super) values: Vec<T>,
     scratch: MemBuffer,
 }
 
@@ -183,15 +182,6 @@ impl<T: Entry> Cholesky<T> {
             values,
             scratch,
         }))
-    }
-
-    /// Number of negative pivots of another matrix with the pattern of A, in the memory of the factor, which [`Self::make_again`] must
-    /// restore before anything is solved; `None` where a pivot is zero or not finite.
-    ///
-    /// # Errors
-    /// `OutOfMemory`; `StoppedByCaller`.
-    pub fn negative_pivots(&mut self, a: &Triangle<T>, interrupt: &Interrupt<'_>) -> Result<Option<Below>> {
-        negative_pivots((&self.symbolic, &mut self.values), a, interrupt)
     }
 
     /// Factors A once more, in the memory and the order of the first time.

@@ -6,7 +6,7 @@
 
 use crate::error::{Error, Result, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::factors::cholesky::analysed_by_degrees;
+use crate::linalg::factors::cholesky::{Cholesky, analysed_by_degrees};
 use crate::linalg::sparse_storage::row_index::widened;
 use crate::linalg::sparse_storage::sparse::Columns;
 use crate::linalg::sparse_storage::triangle::{Entry, Triangle};
@@ -47,6 +47,17 @@ pub fn eigenvalues_below(
     }
 }
 
+impl<T: Entry> Cholesky<T> {
+    /// Number of negative pivots of another matrix with the pattern of A, in the memory of the factor, which [`Self::make_again`] must
+    /// restore before anything is solved; `None` where a pivot is zero or not finite.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub fn negative_pivots(&mut self, a: &Triangle<T>, interrupt: &Interrupt<'_>) -> Result<Option<Below>> {
+        negative_pivots(&self.symbolic, &mut self.values, a, interrupt)
+    }
+}
+
 fn negative_pivots_alone<T: Entry>(a: &Triangle<T>, interrupt: &Interrupt<'_>) -> Result<Option<Below>> {
     let symbolic = {
         let rows = widened(&a.row_idx, CONTEXT)?;
@@ -54,12 +65,13 @@ fn negative_pivots_alone<T: Entry>(a: &Triangle<T>, interrupt: &Interrupt<'_>) -
         analysed_by_degrees(pattern, interrupt)?
     };
     let mut values = try_vec(symbolic.len_val(), T::NONE, CONTEXT)?;
-    negative_pivots((&symbolic, &mut values), a, interrupt)
+    negative_pivots(&symbolic, &mut values, a, interrupt)
 }
 
 /// Number of negative pivots of a matrix in a given order of elimination, with the memory of its factor.
-pub(super) fn negative_pivots<T: Entry>(
-    (symbolic, values): (&SymbolicCholesky<usize>, &mut [T]),
+fn negative_pivots<T: Entry>(
+    symbolic: &SymbolicCholesky<usize>,
+    values: &mut [T],
     a: &Triangle<T>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<Below>> {

@@ -1,7 +1,6 @@
 //! Tests of counts of eigenvalues.
 
 use super::*;
-use crate::linalg::factors::cholesky::Cholesky;
 use crate::linalg::sparse_storage::sparse::Csc;
 
 /// A chain of `n` masses with springs 1, held at both ends, over a second one that turns its phases, or not.
