@@ -24,7 +24,7 @@ const COLD_START_POINTS: (usize, usize) = (100, 1_000);
 /// not less than a share for these starts. The first start measures the model: one with more harmonics must cost more, and mostly several
 /// times as much.
 /// Kind: tuned; measured on: 98 random chains of 2 to 8 masses with stops and sliders, 300 random models of all laws, two dear estimates.
-const COLD_START_WORK: (u64, u64) = (100, 60);
+const COLD_START_WORK: (u64, u64) = (100, 50);
 const COLD_START_SHARE: u64 = 15;
 
 /// The first point with the harmonics that its error requires.
