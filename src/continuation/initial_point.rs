@@ -66,6 +66,8 @@ pub struct Effort {
     pub points: usize,
     /// Number of Newton iterations after which no further homotopy is followed.
     pub iterations: usize,
+    /// Number of operations, as the interrupt of the call has counted them since its begin, at which no further attempt begins.
+    pub until: u64,
 }
 
 /// Bounds of the work for a first point: a homotopy that needs more points circulates among corners.
@@ -73,6 +75,7 @@ pub struct Effort {
 const INITIAL_POINT_MOST: Effort = Effort {
     points: 1_000,
     iterations: usize::MAX,
+    until: u64::MAX,
 };
 
 /// Share of a homotopy that counts as progress.
@@ -122,6 +125,9 @@ fn try_each_way(
     let mut v = try_vec(n + 1, 0.0, CONTEXT)?;
     let mut failure = None;
     for kind in [InitialGuess::Given, InitialGuess::Stuck, InitialGuess::Reference] {
+        if interrupt.operations() >= effort.until {
+            break;
+        }
         let exists = attempt(problem.initial_guess(kind, p, &mut v[..n]), false, &mut failure)?;
         let mut homotopy_guess = None;
         if kind == InitialGuess::Stuck {
@@ -274,7 +280,8 @@ fn try_anchors(
         ..*settings
     };
     for (kind, factor) in ANCHORS {
-        if corrector.steps_taken() >= effort.iterations || !problem.initial_guess(kind, p, &mut anchor)? {
+        let is_over = corrector.steps_taken() >= effort.iterations || interrupt.operations() >= effort.until;
+        if is_over || !problem.initial_guess(kind, p, &mut anchor)? {
             continue;
         }
         for a in &mut anchor {
@@ -366,7 +373,8 @@ fn follow(
     let path = (settings.end - settings.start).abs();
     let (mut reference, mut since) = (left(&nearest), 0);
     for _ in 0..effort.points {
-        if since >= patience || corrector.steps_taken() + continuation.steps_taken() >= effort.iterations {
+        let steps = corrector.steps_taken() + continuation.steps_taken();
+        if since >= patience || steps >= effort.iterations || interrupt.operations() >= effort.until {
             break;
         }
         match continuation.advance(problem, interrupt)? {

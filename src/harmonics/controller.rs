@@ -39,6 +39,8 @@ pub(crate) struct Refined {
     /// Whether the point misses the tolerance and no solution was found with more harmonics, although more are
     /// available.
     pub stuck: bool,
+    /// Whether its error is known.
+    pub known: bool,
 }
 
 /// Selects the harmonics of each point of a branch: collects the signs, asks [`decide`], and carries out the answer.
@@ -154,7 +156,13 @@ impl AdaptivityController {
         keep_parameter: bool,
         interrupt: &Interrupt<'_>,
     ) -> Result<Refined> {
-        let done = |point| Ok(Refined { point, stuck: false });
+        let done = |point| {
+            Ok(Refined {
+                point,
+                stuck: false,
+                known: true,
+            })
+        };
         if !equations.levels().is_automatic() {
             return done(point);
         }
@@ -205,6 +213,7 @@ impl AdaptivityController {
                 return Ok(Refined {
                     point,
                     stuck: !met && matches!(action, Action::Raise(_)),
+                    known: met || !found.error.is_nan(),
                 });
             };
             let before = equations.transfer(&point, level)?;

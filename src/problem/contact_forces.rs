@@ -271,6 +271,7 @@ impl<'a> ContactForces<'a> {
         for (k, assembled) in self.condensed.laws().iter().enumerate() {
             self.interrupt.check()?;
             let at = &assembled.coordinates;
+            self.interrupt.count((at.len() * m).pow(2) as u64);
             let Some(found) = self.memory.found.get_mut(at.len() - 1).and_then(Option::as_mut) else {
                 continue;
             };

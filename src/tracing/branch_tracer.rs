@@ -132,7 +132,7 @@ impl BranchTracer<'_> {
 
             // Refine until the error meets the tolerance.
             let refined = self.controller.refine(analysis, point, end.is_some(), self.interrupt);
-            let Some(Refined { point, stuck }) = some_unless_lost(refined)? else {
+            let Some(Refined { point, stuck, .. }) = some_unless_lost(refined)? else {
                 return Ok(Status::StoppedStepTooSmall);
             };
             let reversed =

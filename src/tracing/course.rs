@@ -28,6 +28,8 @@ pub(crate) struct Course<'a> {
     /// Highest harmonic up to which the first point, at the start of the range, may be sought again with more
     /// harmonics; `None`: it may not.
     pub starts_again: Option<usize>,
+    /// Operations that were counted before the analysis began.
+    pub since: u64,
     /// Bounds of the steps where the branch is followed for its special points alone.
     pub bands: Option<ResonanceBands>,
     /// Resonances of the structure with linear forces, ascending, that no step passes where the branch feels them.

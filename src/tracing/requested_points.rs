@@ -15,6 +15,7 @@ use crate::tracing::course::BranchTracer;
 const REQUESTED_MOST: Effort = Effort {
     points: 200,
     iterations: 2_000,
+    until: u64::MAX,
 };
 
 /// Solves at the requested parameter values on the arc from `a` (included) to `b` (included if it is the last

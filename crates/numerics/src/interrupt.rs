@@ -71,6 +71,8 @@ pub struct Interrupt<'a> {
     largest: Cell<u64>,
     /// Number of operations since the last report.
     work: Cell<u64>,
+    /// Number of operations since the call began.
+    operations: Cell<u64>,
 }
 
 impl<'a> Interrupt<'a> {
@@ -89,6 +91,7 @@ impl<'a> Interrupt<'a> {
             checks: Cell::new(0),
             largest: Cell::new(0),
             work: Cell::new(0),
+            operations: Cell::new(0),
         }
     }
 
@@ -122,6 +125,7 @@ impl<'a> Interrupt<'a> {
             return Err(Error::out_of_memory("the running call"));
         }
         self.largest.set(self.largest.get().max(operations));
+        self.count(operations);
         let work = self.work.get().saturating_add(operations);
         self.work.set(work);
         if work < BETWEEN_REPORTS {
@@ -149,6 +153,20 @@ impl<'a> Interrupt<'a> {
     #[inline]
     pub fn checks(&self) -> u64 {
         self.checks.get()
+    }
+
+    /// Counts operations of a loop that is too short for a check of its own.
+    #[inline]
+    pub fn count(&self, operations: u64) {
+        self.operations.set(self.operations.get().saturating_add(operations));
+    }
+
+    /// Number of operations so far, those of [`Self::check_before`] and [`Self::count`]: the work of the call, which does not depend on
+    /// the machine. It serves to compare, and is no exact number: a check without a number stands for ten thousand.
+    #[must_use]
+    #[inline]
+    pub fn operations(&self) -> u64 {
+        self.operations.get()
     }
 
     /// Checks for a stop, and reports the phase with its completed share: at its beginning, whenever the share has
@@ -273,5 +291,18 @@ mod tests {
         }
         assert_eq!(reports.borrow().len(), 10);
         assert_eq!(interrupt.largest(), BETWEEN_REPORTS / 2);
+    }
+
+    #[test]
+    fn operations_are_counted_with_a_check_and_without() {
+        let interrupt = Interrupt::none();
+        interrupt.check().unwrap();
+        interrupt.check_before(5).unwrap();
+        interrupt.count(7);
+        assert_eq!(interrupt.operations(), OF_ONE_CHECK + 12);
+        // A report begins its own count anew, and leaves that of the call.
+        interrupt.check_before(2 * BETWEEN_REPORTS).unwrap();
+        assert_eq!(interrupt.operations(), OF_ONE_CHECK + 12 + 2 * BETWEEN_REPORTS);
+        assert_eq!(interrupt.checks(), 3);
     }
 }

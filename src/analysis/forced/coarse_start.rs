@@ -29,6 +29,7 @@ const COARSE_START_LARGE: usize = 1000;
 const COARSE_START_MOST: Effort = Effort {
     points: 200,
     iterations: usize::MAX,
+    until: u64::MAX,
 };
 
 /// Share of the period that a contact slips above which Newton's method from small motion mostly fails.

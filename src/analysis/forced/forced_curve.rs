@@ -225,6 +225,7 @@ fn follow(
     interrupt: &Interrupt<'_>,
     trace: impl FnOnce(&mut BranchTracer<'_>, &mut ForcedDiscretised<'_>, Point, &mut Hooks<'_>) -> Result<Status>,
 ) -> Result<SampledModel> {
+    let since = interrupt.operations();
     interrupt.phase(Phase::Setup, 0.0)?;
     let sweep = Range::new(range.omega_start, range.omega_stop);
     let forced = forced_harmonics(model)?;
@@ -240,10 +241,9 @@ fn follow(
     let resolution = levels.at(level)?;
     let length = resolution.condensed.length();
     // The lower end is used, so that both directions follow the same degree of freedom.
-    let lower = range.omega_start.min(range.omega_stop);
     let response_dof = match solver.response_dof {
         Some(dof) => dof,
-        None => forced_dof_with_largest_motion(model, &resolution.condensed, lower, interrupt)?,
+        None => forced_dof_with_largest_motion(model, &resolution.condensed, sweep.low(), interrupt)?,
     };
     let mut settings = settings_of(solver, sweep, detail);
     if inside.is_some() || range.branches > 0 {
@@ -278,6 +278,7 @@ fn follow(
     let mut course = Course {
         bands: bands(model, (solver, detail), (&forced, sweep), interrupt)?,
         resonances: linear_resonances(model, sweep, interrupt)?,
+        since,
         ..course_of(solver, range, settings)
     };
     let first = match inside {
@@ -370,6 +371,7 @@ fn course_of<'a>(solver: &SolverOptions, range: &ForcedOptions<'a>, settings: Se
         bands: None,
         resonances: Vec::new(),
         ends: None,
+        since: 0,
     }
 }
 

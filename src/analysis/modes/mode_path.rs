@@ -71,6 +71,7 @@ pub(crate) fn course<'a>(
         starts_again: None,
         bands: None,
         resonances: Vec::new(),
+        since: 0,
     };
     (course, settings)
 }

@@ -256,7 +256,7 @@ impl ContactForces<'_> {
                 }
             };
             for (first, columns) in columns.chunks_mut(COUPLING_BETWEEN_CHECKS * n).enumerate() {
-                self.interrupt.check()?;
+                self.interrupt.check_before(2 * columns.len() as u64)?;
                 let first = first * COUPLING_BETWEEN_CHECKS;
                 let block = (&block[first * m..], first);
                 self.arch.dispatch(Coupling {

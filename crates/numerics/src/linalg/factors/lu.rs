@@ -36,7 +36,17 @@ const LU_BETWEEN_CHECKS: usize = 1 << 23;
 /// Kind: tuned; measured on: not recorded.
 const COLUMNS_AT_ONCE: usize = 4;
 
+/// Operations of a factorisation that take the time of one of a simple loop: a register holds four numbers.
+/// Kind: block.
+const LU_SIDE_BY_SIDE: u64 = 4;
+
 const CONTEXT: &str = "an LU factorisation";
+
+/// Operations of the factors of a matrix of order n, ⅔ n³, in those of a simple loop, as they are counted.
+#[must_use]
+pub fn operations_of_factors(n: usize) -> u64 {
+    2 * (n as u64).saturating_pow(3) / (3 * LU_SIDE_BY_SIDE)
+}
 
 /// Memory for the blocked kernels.
 struct Blocked {
@@ -135,6 +145,7 @@ impl<T: Scalar> Lu<T> {
             pivots: &mut self.pivots,
             turned: &mut self.small,
         };
+        interrupt.count(operations_of_factors(n));
         let done = self.arch.dispatch(factorisation);
         done.or_else(|(pivot, size)| singular(n, pivot, size))
     }
@@ -152,7 +163,7 @@ impl<T: Scalar> Lu<T> {
         if n > PANELS_ABOVE {
             panels::factor(&mut self.a[..n * n], n, blocked, interrupt)?;
         } else {
-            interrupt.check_before((n * n * n) as u64)?;
+            interrupt.check_before(operations_of_factors(n))?;
             factor::lu_in_place::<usize, T>(
                 MatMut::from_column_major_slice_mut(&mut self.a[..n * n], n, n),
                 &mut blocked.forward[..n],

@@ -13,7 +13,7 @@ pub use bordered_parts::Parts;
 
 use crate::error::{Result, boxed, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::factors::lu::Lu;
+use crate::linalg::factors::lu::{Lu, operations_of_factors};
 use crate::linalg::factors::small_lu::{self, SmallLu};
 use near_diagonal::NearDiagonal;
 use num_complex::Complex64;
@@ -71,7 +71,10 @@ impl Factors {
 
     fn factor(&mut self, interrupt: &Interrupt<'_>) -> Result<()> {
         match self {
-            Self::Small(lu) => lu.factor(),
+            Self::Small(lu) => {
+                interrupt.count(operations_of_factors(small_lu::SMALL_LU_LARGEST));
+                lu.factor()
+            }
             Self::Large(lu) => lu.factor(interrupt),
         }
     }

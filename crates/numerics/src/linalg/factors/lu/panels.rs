@@ -5,7 +5,7 @@
 
 use crate::error::Result;
 use crate::interrupt::Interrupt;
-use crate::linalg::factors::lu::{Blocked, Scalar, interchanges};
+use crate::linalg::factors::lu::{Blocked, LU_SIDE_BY_SIDE, Scalar, interchanges};
 use faer::dyn_stack::MemStack;
 use faer::linalg::lu::partial_pivoting::factor;
 use faer::linalg::{matmul, triangular_solve};
@@ -28,7 +28,7 @@ pub(super) fn factor<T: Scalar>(a: &mut [T], n: usize, blocked: &mut Blocked, in
     for first in (0..n).step_by(PANEL) {
         let width = PANEL.min(n - first);
         let rows = n - first;
-        interrupt.check_before((rows * width * width) as u64)?;
+        interrupt.check_before((rows * width * width) as u64 / LU_SIDE_BY_SIDE)?;
         let (done, right) = a.split_at_mut((first + width) * n);
         let (left, panel) = done.split_at_mut(first * n);
         factor::lu_in_place::<usize, T>(
@@ -53,7 +53,7 @@ pub(super) fn factor<T: Scalar>(a: &mut [T], n: usize, blocked: &mut Blocked, in
         let upper = panel.submatrix(first, 0, width, width);
         let lower = panel.submatrix(first + width, 0, rows - width, width);
         for chunk in right.chunks_mut(CHUNK * n) {
-            interrupt.check_before((2 * rows * width * chunk.len() / n) as u64)?;
+            interrupt.check_before((2 * rows * width * chunk.len() / n) as u64 / LU_SIDE_BY_SIDE)?;
             for column in chunk.chunks_exact_mut(n) {
                 exchange(swaps, &mut column[first..]);
             }

@@ -202,6 +202,7 @@ impl LinearSystem for DenseSystem {
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
         interrupt.check()?;
+        interrupt.count((b.len() * b.len() / 2) as u64);
         if self.factors.is_near() {
             return self.solve_near(b, interrupt);
         }

@@ -285,6 +285,7 @@ impl KrylovSystem {
             let (preconditioned, scaled) = (&mut self.vectors.product, &mut self.vectors.scaled);
             let solved = self.memory.solve(b, tolerance, most, |v, out| {
                 interrupt.check()?;
+                interrupt.count((reduced.len() * reduced.len() / 2) as u64);
                 preconditioned.copy_from_slice(v);
                 let factors = (&mut *factors.0, &mut *factors.1, &mut *factors.2);
                 Self::precondition(factors, jacobian, lengths, reduced, preconditioned)?;
