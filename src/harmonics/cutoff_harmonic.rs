@@ -324,10 +324,9 @@ fn highest_frequency(
 
 #[cfg(test)]
 mod tests {
-    use super::{CutoffHarmonic, carried_from, carried_to, spectral_norm};
+    use super::{CutoffHarmonic, Sought, spectral_norm};
     use crate::condense::Condensed;
     use crate::contact::Contact;
-    use crate::fourier::HarmonicSet;
     use crate::interrupt::Interrupt;
     use crate::linalg::sparse_storage::matrix_view::MatrixView;
     use crate::model::Model;
