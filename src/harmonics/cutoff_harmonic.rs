@@ -88,9 +88,11 @@ impl CutoffHarmonic {
         let mut resonant = ResonantHarmonics::default();
         let highest = highest_frequency(&condensed, &mut resonant, interrupt)?;
         if condensed.ndof() > SMALL_STRUCTURE {
-            for block in condensed.blocks() {
+            for (i, block) in condensed.blocks().iter().enumerate() {
                 let source = block_of(solved, block.number).and_then(|i| solved.blocks()[i].source.as_ref());
-                resonant.add_source(block, source)?;
+                // Harmonics of one wave look at the modes of the first one.
+                let is_first = block_of(&condensed, block.number) == Some(i);
+                resonant.add_source(&condensed, block, source.filter(|_| is_first))?;
             }
         }
         Ok(Self {
@@ -317,7 +319,7 @@ fn highest_frequency(
             Ok(pairs) => pairs,
         };
         highest = pairs.values.iter().fold(highest, |w, x| w.max(x.max(0.0).sqrt()));
-        resonant.add_pairs(block, &pairs)?;
+        resonant.add_pairs(condensed, block, &pairs)?;
     }
     Ok(Some(highest))
 }

@@ -53,16 +53,8 @@ pub(super) struct Sought {
 /// Modes of the waves of a model, as its contacts feel them.
 #[derive(Default)]
 pub(super) struct ResonantHarmonics {
-    /// One wave for each carried harmonic; empty where no modes are known.
-    waves: Vec<Wave>,
-}
-
-/// Modes of a wave in the order of their frequencies.
-#[derive(Default)]
-struct Wave {
-    modes: Vec<Mode>,
-    /// |r_c φ_k|², mode after mode.
-    felt: Vec<f64>,
+    /// For each carried harmonic the modes of its wave in the order of their frequencies; none where they are not known.
+    waves: Vec<Vec<Mode>>,
 }
 
 /// A mode with unit modal mass.
@@ -73,16 +65,28 @@ struct Mode {
     damping: f64,
     /// d_k.
     structural: f64,
+    /// Σ_c kt_c |r_c φ_k|², with the stiffness of contacts at the frequency of the mode.
+    felt: f64,
+}
+
+impl Mode {
+    /// Σ_c kt_c |r_c φ_k|² of a mode, from the size of its motion at each coordinate.
+    fn felt(condensed: &Condensed, square: f64, size: impl Fn(usize) -> f64) -> f64 {
+        let nu = square.max(0.0).sqrt();
+        (0..condensed.coordinates())
+            .map(|c| condensed.impedance(c, nu) * size(c))
+            .sum()
+    }
 }
 
 impl ResonantHarmonics {
     /// Adds the wave of the next carried harmonic from its undamped modes, which are all.
-    pub fn add_pairs(&mut self, block: &HarmonicBlock, pairs: &Pairs) -> Result<()> {
+    pub fn add_pairs(&mut self, condensed: &Condensed, block: &HarmonicBlock, pairs: &Pairs) -> Result<()> {
         let n = pairs.vectors.nrows();
         let of = |values: &[Complex64]| on_pattern(block, values);
         let damping = of(&block.matrices.damping);
         let structural = block.matrices.structural.as_ref().map(|values| of(values));
-        let mut wave = Wave::default();
+        let mut wave = Vec::new();
         for (k, &square) in pairs.values.iter().enumerate() {
             let shape = &pairs.vectors.as_slice()[k * n..(k + 1) * n];
             let form = |a: &DMatrix<Complex64>| {
@@ -96,11 +100,9 @@ impl ResonantHarmonics {
                 square,
                 damping: form(&damping),
                 structural: structural.as_ref().map_or(0.0, form),
+                felt: Mode::felt(condensed, square, |c| block.motions.rows[c].along(shape).norm_sqr()),
             };
-            try_push(&mut wave.modes, mode, CONTEXT)?;
-            for row in &block.motions.rows {
-                try_push(&mut wave.felt, row.along(shape).norm_sqr(), CONTEXT)?;
-            }
+            try_push(&mut wave, mode, CONTEXT)?;
         }
         try_push(&mut self.waves, wave, CONTEXT)
     }
@@ -109,46 +111,42 @@ impl ResonantHarmonics {
     ///
     /// Modes have φᴴ K φ = 1 and μ = 1/ω². A pole λ has the term l r λ/(λ − iν), which near its resonance is that of a mode with
     /// |φ|² = 2|λ|² |l r|, ω = |λ| and c = −2 Re λ.
-    pub fn add_source(&mut self, block: &HarmonicBlock, source: Option<&Source>) -> Result<()> {
-        let mut wave = Wave::default();
+    pub fn add_source(&mut self, condensed: &Condensed, block: &HarmonicBlock, source: Option<&Source>) -> Result<()> {
+        let mut wave = Vec::new();
         let Some(source) = source else {
             return try_push(&mut self.waves, wave, CONTEXT);
         };
         let n = block.matrices.reference.rows;
         let (shapes, adjoints) = source.shapes();
-        // The stiffest come first.
+        // The stiffest come first. Poles of negative frequencies resonate in no harmonic.
         for k in (0..source.len()).rev() {
-            let mu = source.value(k);
-            let (mode, unit) = match source {
+            let of = |all: &[Complex64], c: usize| block.motions.rows[c].along(&all[k * n..(k + 1) * n]).norm();
+            let felt =
+                |square: f64, unit: f64| Mode::felt(condensed, square, |c| unit * of(shapes, c) * of(adjoints, c));
+            let mode = match source {
                 Source::Modes(modes) => {
-                    let square = mu.re.recip();
+                    let square = modes.values[k].recip();
                     let (alpha, beta) = modes.proportional;
-                    let mode = Mode {
+                    Mode {
                         square,
                         damping: alpha + beta * square,
                         structural: modes.loss_factor * square,
-                    };
-                    (mode, square)
+                        felt: felt(square, square),
+                    }
                 }
-                Source::Poles(_) => {
-                    let pole = mu.inv();
-                    // Those of negative frequencies resonate in no harmonic.
+                Source::Poles(poles) => {
+                    let pole = poles.values[k].inv();
                     let square = if pole.im > 0.0 { pole.norm_sqr() } else { 0.0 };
-                    let mode = Mode {
+                    Mode {
                         square,
                         damping: -2.0 * pole.re,
                         structural: 0.0,
-                    };
-                    (mode, 2.0 * square)
+                        felt: felt(square, 2.0 * square),
+                    }
                 }
             };
-            if !(mode.square.is_finite() && mode.square > 0.0) {
-                continue;
-            }
-            try_push(&mut wave.modes, mode, CONTEXT)?;
-            let of = |all: &[Complex64], row: usize| block.motions.rows[row].along(&all[k * n..(k + 1) * n]).norm();
-            for row in 0..block.motions.rows.len() {
-                try_push(&mut wave.felt, unit * of(shapes, row) * of(adjoints, row), CONTEXT)?;
+            if mode.square.is_finite() && mode.square > 0.0 {
+                try_push(&mut wave, mode, CONTEXT)?;
             }
         }
         try_push(&mut self.waves, wave, CONTEXT)
@@ -156,7 +154,7 @@ impl ResonantHarmonics {
 
     /// The last harmonic of those `sought` in which a mode resonates at the angular frequency ω; the first of them where none does.
     pub fn last(&self, condensed: &Condensed, omega: f64, sought: Sought) -> usize {
-        let highest = self.waves.iter().filter_map(|wave| wave.modes.last());
+        let highest = self.waves.iter().filter_map(|wave| wave.last());
         let highest = highest.map(|mode| mode.square).fold(0.0, f64::max).sqrt();
         let set = condensed.set();
         let step = set.base() * set.stride();
@@ -182,24 +180,16 @@ impl ResonantHarmonics {
         sought.from
     }
 
-    /// Σ_c kt_c |G_cc| in a harmonic by so many modes on each side of it; 0 where its modes are not known.
+    /// |Σ_c kt_c G_cc| in a harmonic by so many modes on each side of it; 0 where its modes are not known.
     fn size(&self, condensed: &Condensed, h: usize, omega: f64, beside: usize) -> f64 {
         let nu = h as f64 * omega;
         let Some(wave) = block_of(condensed, h).and_then(|i| self.waves.get(i)) else {
             return 0.0;
         };
-        let place = wave.modes.partition_point(|mode| mode.square < nu * nu);
-        let near = place.saturating_sub(beside)..place.saturating_add(beside).min(wave.modes.len());
-        let coordinates = condensed.coordinates();
-        let felt = |c: usize| {
-            let term = |k: usize| {
-                let mode = &wave.modes[k];
-                let d = Complex64::new(mode.square - nu * nu, nu * mode.damping + mode.structural);
-                wave.felt[k * coordinates + c] / d
-            };
-            condensed.impedance(c, nu) * near.clone().map(term).sum::<Complex64>().norm()
-        };
-        (0..coordinates).map(felt).sum()
+        let place = wave.partition_point(|mode| mode.square < nu * nu);
+        let near = place.saturating_sub(beside)..place.saturating_add(beside).min(wave.len());
+        let term = |mode: &Mode| mode.felt / Complex64::new(mode.square - nu * nu, nu * mode.damping + mode.structural);
+        wave[near].iter().map(term).sum::<Complex64>().norm()
     }
 }
 
