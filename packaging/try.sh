@@ -27,7 +27,7 @@ try() { # name, tool, function
     fi
     mkdir -p "$work/$3"
     (set -e; cd "$work/$3"; "$3") >"$work/$3.log" 2>&1
-    if [ $? = 0 ] && grep -q "resonance at 1.23203" "$work/$3.log"; then
+    if [ $? = 0 ] && grep -q "resonance at 1.23202" "$work/$3.log"; then
         printf '%-22s passed\n' "$1"
     else
         printf '%-22s FAILED: %s\n' "$1" "$work/$3.log"

@@ -248,7 +248,7 @@ fn many_contacts_along_a_sweep_allocate_only_where_a_panel_is_laid() {
         let slipping = problem.slip_fractions().iter().filter(|s| **s > 0.0).count();
         assert!(slipping > 0 && slipping < n, "{slipping} contacts slip");
         iterations += corrected.iterations;
-        assert!(k == 0 || count == 1, "{count} allocations at {omega}");
+        assert!(k == 0 || count <= 1, "{count} allocations at {omega}");
     }
     assert!(iterations > 8, "{iterations} iterations");
 }

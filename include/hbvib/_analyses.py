@@ -100,7 +100,7 @@ class _Analyses(_Matrices):
         >>> model.add_force(0, 0.2)
         >>> branch = model.forced_response((0.8, 1.6), at=[1.0])
         >>> print("%.4f" % branch.amplitude.max(), branch.at(0).amplitude.round(4))
-        0.5834 [0.2]
+        0.5835 [0.2]
         """
         start, stop = _range("omega", omega, "forced_response((0.8, 1.6), at=omega)", single=True)
         options = _new("hbvib_forced_options", omega_start=start, omega_stop=stop, together=int(bool(together)),

@@ -37,7 +37,7 @@ class Branch(_BranchFields, _BranchPoints, _BranchResponses, _BranchChildren, _M
     >>> model.add_force(0, 0.2)
     >>> branch = model.forced_response((0.8, 1.6))
     >>> branch
-    <hbvib.Branch: 45 points, omega 0.8 to 1.6, peak 0.583635 at omega = 1.23203, OK>
+    <hbvib.Branch: 45 points, omega 0.8 to 1.6, peak 0.583649 at omega = 1.23202, OK>
     """
 
     _release = staticmethod(lib.hbvib_branch_free)
@@ -173,7 +173,7 @@ class Branch(_BranchFields, _BranchPoints, _BranchResponses, _BranchChildren, _M
         >>> path = os.path.join(tempfile.mkdtemp(), "branch.npz")
         >>> branch.save(path)
         >>> hbvib.load(path)
-        <hbvib.SavedBranch: 45 points, omega 0.8 to 1.6, peak 0.583635 at omega = 1.23203, OK>
+        <hbvib.SavedBranch: 45 points, omega 0.8 to 1.6, peak 0.583649 at omega = 1.23202, OK>
         """
         from . import _storage
         _storage.save(self, path, harmonics)

@@ -107,7 +107,7 @@ class _BranchPoints(_Owner):
         >>> branch = model.forced_response((0.8, 1.6))
         >>> summary = branch.summary(branch.peaks().point[0], 0)
         >>> print("%.3f %.3f" % (summary.work, summary.slip_share))
-        0.340 0.502
+        0.340 0.501
         """
         summary = _new("hbvib_contact_summary")
         _stoppable("hbvib_branch_contact_summary", self.handle, point, contact, summary, phase=phase, cancel=cancel)
@@ -146,7 +146,7 @@ class _BranchPoints(_Owner):
         >>> model.add_force(0, 0.2)
         >>> branch = model.forced_response((0.8, 1.6))
         >>> branch.slip(branch.peaks().point[0]).round(3)
-        array([0.502])
+        array([0.501])
         """
         shares = np.empty(self.reduction.contacts)
         self._call("hbvib_branch_slip_fraction", point, shares, shares.size)
@@ -298,7 +298,7 @@ class _BranchPoints(_Owner):
         >>> model.add_force(0, 0.2)
         >>> branch = model.forced_response((0.8, 1.6), at=[1.0, 1.2])
         >>> branch.at(1).amplitude.round(4)
-        array([0.56])
+        array([0.5599])
         """
         amplitude, point = self._listed("hbvib_branch_at", (wanted,), [float, np.int64])
         return Wanted(self._omega_at(wanted, point), amplitude, point)
@@ -327,7 +327,7 @@ class _BranchPoints(_Owner):
         >>> model.add_force(0, 0.2)
         >>> branch = model.forced_response((0.8, 1.6))
         >>> branch.point(branch.peaks().point[0])
-        <hbvib.StoredPoint 45: omega 1.23203, amplitude 0.583635>
+        <hbvib.StoredPoint 45: omega 1.23202, amplitude 0.583649>
         """
         return StoredPoint(cast("Branch", self), _whole(number, name="point"))
 

@@ -133,9 +133,9 @@ def from_dataframe(table: Any) -> SavedBranch:
     >>> model.add_force(0, 0.2)
     >>> table = model.forced_response((0.8, 1.6)).to_dataframe()
     >>> hbvib.from_dataframe(table)
-    <hbvib.SavedBranch: 45 points, omega 0.8 to 1.6, peak 0.583635 at omega = 1.23203, OK>
+    <hbvib.SavedBranch: 45 points, omega 0.8 to 1.6, peak 0.583649 at omega = 1.23202, OK>
     >>> hbvib.from_dataframe(table[table.omega > 1.2])
-    <hbvib.SavedBranch: 15 points, omega 1.20801 to 1.6, OK>
+    <hbvib.SavedBranch: 15 points, omega 1.21443 to 1.6, OK>
     """
     known = {field.name.lower() for field in Field}
     columns = {str(name): np.asarray(table[name]) for name in table.columns}

@@ -15,12 +15,12 @@ __all__ = ["friction_oscillator", "duffing_oscillator", "assert_same_curve", "as
 
 def friction_oscillator(force: float = 0.2) -> Model:
     """A mass of 1 on a spring of 1 with C = 0.02, on an elastic slider of stiffness 1 and limit 0.3. Under small forces its resonance
-    is sqrt(2), under large ones 1; under 0.2 it is 1.23203.
+    is sqrt(2), under large ones 1; under 0.2 it is 1.23202.
 
     >>> import hbvib.testing
     >>> branch = hbvib.testing.friction_oscillator().forced_response((0.8, 1.6))
     >>> print("%.5f" % branch.peaks().omega[0])
-    1.23203
+    1.23202
     """
     model = Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
     model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)

@@ -26,7 +26,9 @@ use crate::contact::Contact;
 use crate::error::{Result, Status, boxed, try_copy, try_push, try_room, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
+use crate::linalg::factors::inertia::eigenvalues_below;
 use crate::linalg::power_of_two;
+use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
 use crate::options::Range;
 use crate::options::{Content, DampingForm, Exchanged, Flexibility, SolverOptions};
@@ -117,19 +119,48 @@ impl Condensed {
         self.reference == Reference::Stuck && self.coordinates() * self.set.packed_len() <= STUCK_ABOVE
     }
 
-    /// The tables that a sweep makes: linear responses need the column of the excitation alone, of the harmonics with force.
-    pub(crate) fn tables_of_sweep(&self) -> SweepTables {
-        if self.serves_linear_responses() {
-            SweepTables {
-                harmonics: self.blocks.iter().filter(|block| block.has_force()).count(),
-                contacts: 0,
-            }
+    /// The tables that a sweep over a range, where that is known, makes: linear responses need the column of the excitation alone, of
+    /// the harmonics with force.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub(crate) fn tables_of_sweep(&self, range: Option<Range>, interrupt: &Interrupt<'_>) -> Result<SweepTables> {
+        let resonances = match range {
+            Some(range) => self.resonances_within(range, interrupt)?,
+            None => 0,
+        };
+        let (harmonics, contacts) = if self.serves_linear_responses() {
+            (self.blocks.iter().filter(|block| block.has_force()).count(), 0)
         } else {
-            SweepTables {
-                harmonics: self.blocks.len(),
-                contacts: self.coordinates(),
-            }
-        }
+            (self.blocks.len(), self.coordinates())
+        };
+        Ok(SweepTables {
+            harmonics,
+            contacts,
+            resonances,
+        })
+    }
+
+    /// Number of natural frequencies of the lowest harmonic with a force in a range, without damping; 0 where they cannot be counted.
+    fn resonances_within(&self, range: Range, interrupt: &Interrupt<'_>) -> Result<usize> {
+        let Some(block) = self.blocks.iter().find(|block| block.number > 0 && block.has_force()) else {
+            return Ok(0);
+        };
+        let on_pattern = |values: &[Complex64]| -> Result<Csc> {
+            let mut matrix = block.matrices.reference.try_clone()?;
+            matrix.values.copy_from_slice(values);
+            Ok(matrix)
+        };
+        let (k, m) = (
+            on_pattern(&block.matrices.stiffness)?,
+            on_pattern(&block.matrices.mass)?,
+        );
+        let real = k.is_real() && m.is_real();
+        let below = |omega: f64| {
+            let nu = block.number as f64 * omega;
+            Ok(eigenvalues_below(&k, (nu * nu, &m), real, interrupt)?.map_or(0, |below| below.count))
+        };
+        Ok(below(range.start)?.abs_diff(below(range.stop)?))
     }
 
     /// Attaches the modes or poles of each wave that has such: the flexibility is then a sum over them.

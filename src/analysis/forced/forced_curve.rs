@@ -150,7 +150,7 @@ fn with_detail(
     let outcome = with_samples(&with_exchange, |solver| {
         let is_fixed = solver.tolerance == 0.0 && !solver.estimate_error && solver.stability.is_none();
         let own = if is_fixed {
-            SharedWaves::of_one_sweep()
+            SharedWaves::of_one_sweep(Range::new(range.omega_start, range.omega_stop))
         } else {
             SharedWaves::default()
         };

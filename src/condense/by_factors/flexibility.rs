@@ -74,6 +74,8 @@ pub struct Workspace {
     /// Motion of all degrees of freedom and its change, made when they are first requested.
     pub(crate) motion: Vec<Complex64>,
     pub(crate) table: Table,
+    /// Products of the response's change with the solutions side by side.
+    pub(crate) along: Vec<Complex64>,
     /// Whether solutions side by side have lost digits, so that columns are kept and refined from then on.
     pub(crate) loses_digits: bool,
 }
@@ -101,6 +103,7 @@ impl Workspace {
             load: try_vec(n, Complex64::ZERO, CONTEXT)?,
             motion: Vec::new(),
             table: Table::new(condensed.coordinates())?,
+            along: Vec::new(),
             loses_digits: false,
         })
     }

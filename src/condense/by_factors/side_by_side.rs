@@ -3,7 +3,7 @@
 
 use crate::condense::Condensed;
 use crate::condense::by_factors::flexibility::{CONTEXT, Slopes, Workspace, made, read};
-use crate::error::{Result, try_push, try_vec};
+use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use num_complex::Complex64;
 
@@ -52,17 +52,23 @@ impl Workspace {
         block.force_at(omega, &mut self.columns);
         let dynamic = made(&mut self.dynamic, condensed)?;
         dynamic.solve(condensed, i, omega, &mut self.columns, false, interrupt)?;
-        let mut ports = Vec::new();
-        for row in block.motions.rows.iter().chain([&self.responses[i]]) {
-            try_push(&mut ports, row.terms().as_slice(), CONTEXT)?;
-        }
+        let response = &self.responses[i];
+        let port = |c: usize| block.motions.rows.get(c).unwrap_or(response).terms().as_slice();
         let outputs = coordinates + 1;
-        let mut along = try_vec(if of_response { outputs } else { 0 }, Complex64::ZERO, CONTEXT)?;
+        if self.along.len() != outputs {
+            self.along = try_vec(outputs, Complex64::ZERO, CONTEXT)?;
+        }
         let moved = if of_response { &self.products[..n] } else { &[] };
         let Some(slender) = dynamic.slender() else {
             return Ok(false);
         };
-        let largest = slender.flexibility(&ports, (&mut self.table.value, outputs), (moved, &mut along), interrupt)?;
+        let largest = slender.flexibility(
+            outputs,
+            port,
+            (&mut self.table.value, outputs),
+            (moved, &mut self.along),
+            interrupt,
+        )?;
         if dynamic.loses_digits(condensed, i, outputs, || largest) || dynamic.should_refine(condensed, i, &self.columns)
         {
             self.loses_digits = true;
@@ -76,14 +82,14 @@ impl Workspace {
         );
         if of_response {
             let excited = moved.iter().zip(&self.columns).map(|(a, b)| a * b).sum::<Complex64>();
-            along[coordinates] = excited;
+            self.along[coordinates] = excited;
             for (slope, along) in self
                 .table
                 .slope
                 .iter_mut()
                 .skip(coordinates)
                 .step_by(outputs)
-                .zip(&along)
+                .zip(&self.along)
             {
                 *slope = -along;
             }

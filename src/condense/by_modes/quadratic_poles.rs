@@ -27,6 +27,7 @@ use crate::linalg::dense::general_eigen;
 use crate::linalg::factors::factor::is_dense;
 use crate::linalg::factors::lu::Lu;
 use crate::linalg::libraries::DMatrix;
+use crate::options::Range;
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -57,10 +58,11 @@ const MOST_CONDITION: f64 = 1e4;
 /// Kind: tuned; measured on: not recorded.
 const MOST_CHANGE: f64 = 1e-6;
 
-/// The poles of the i-th carried harmonic, or the reason why it has none.
+/// The poles of the i-th carried harmonic, or the reason why it has none; along a range, where that is known, factors may be quicker.
 pub(crate) fn poles(
     condensed: &Condensed,
     i: usize,
+    range: Option<Range>,
     interrupt: &Interrupt<'_>,
 ) -> Result<core::result::Result<WavePoles, FlexibilityWay>> {
     const UNSUITABLE: FlexibilityWay = FlexibilityWay::Unsuitable;
@@ -69,7 +71,7 @@ pub(crate) fn poles(
     if block.number == 0 || !is_forced {
         return Ok(Err(UNSUITABLE));
     }
-    if let Some(reason) = factors_are_quicker(condensed, block)? {
+    if let Some(reason) = factors_are_quicker(condensed, block, range, interrupt)? {
         return Ok(Err(reason));
     }
     let Some(wave) = Undamped::new(condensed, i, interrupt)? else {
@@ -114,7 +116,12 @@ fn work(condensed: &Condensed, block: &HarmonicBlock) -> f64 {
 
 /// The reason to take factors where the poles of a wave take more than a second or longer than the factorisations of
 /// a sweep; else `None`.
-fn factors_are_quicker(condensed: &Condensed, block: &HarmonicBlock) -> Result<Option<FlexibilityWay>> {
+fn factors_are_quicker(
+    condensed: &Condensed,
+    block: &HarmonicBlock,
+    range: Option<Range>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<FlexibilityWay>> {
     let work = work(condensed, block);
     if work > MOST_POLE_WORK {
         return Ok(Some(FlexibilityWay::Many));
@@ -123,7 +130,7 @@ fn factors_are_quicker(condensed: &Condensed, block: &HarmonicBlock) -> Result<O
         return Ok(None);
     }
     // A wave serves all harmonics unless their speeds differ.
-    let mut tables = condensed.tables_of_sweep();
+    let mut tables = condensed.tables_of_sweep(range, interrupt)?;
     if block.matrices.tied.is_some() {
         tables.harmonics = 1;
     }

@@ -65,7 +65,7 @@ fn check(model: &Model, reference: Reference) -> usize {
     let mut direct = Workspace::new(&condensed, Some(RESPONSE)).unwrap();
     let mut count = 0;
     for i in (0..condensed.blocks().len()).filter(|&i| condensed.blocks()[i].number > 0) {
-        let found = poles(&condensed, i, &interrupt).unwrap().unwrap();
+        let found = poles(&condensed, i, None, &interrupt).unwrap().unwrap();
         assert!(are_of(&found, &condensed.blocks()[i]));
         let rows = ModalRows::new((&condensed, i, RESPONSE), Source::Poles(Arc::new(found))).unwrap();
         let by_poles = ModalTable::new((&condensed, i), Arc::new(rows)).unwrap();
@@ -155,5 +155,5 @@ fn a_badly_conditioned_pole_is_refused() {
     model.add_force(0, 1, Complex64::ONE).unwrap();
     let condensed = condensed(&model, Reference::Stuck);
     let i = condensed.blocks().iter().position(|block| block.number == 1).unwrap();
-    assert!(poles(&condensed, i, &Interrupt::none()).unwrap().is_err());
+    assert!(poles(&condensed, i, None, &Interrupt::none()).unwrap().is_err());
 }

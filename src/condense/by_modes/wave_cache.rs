@@ -18,6 +18,7 @@ use crate::model::Model;
 use crate::model::few_motions::reduced_wave::MotionRow;
 use crate::model::matrices::structure::MatrixKind;
 use crate::model::matrices::wave::Wave;
+use crate::options::Range;
 use num_complex::Complex64;
 use std::cell::Cell;
 use std::sync::Arc;
@@ -58,8 +59,8 @@ pub struct WaveCache {
     has_no_modes: bool,
     without_poles: Option<FlexibilityWay>,
     has_many_dampers: bool,
-    /// Whether the modes serve one sweep with the harmonics of its model alone.
-    is_of_one_sweep: bool,
+    /// The range of the one sweep with the harmonics of its model that the modes serve; `None` where they serve more.
+    sweep: Option<Range>,
 }
 
 /// Z_κ at zero frequency and M of a block, with the modes of its wave.
@@ -77,10 +78,11 @@ pub struct SharedWaves {
 }
 
 impl SharedWaves {
-    /// Waves that serve one sweep with the harmonics of its model alone, so that modes must take less time than its factors.
-    pub fn of_one_sweep() -> Self {
+    /// Waves that serve one sweep over a range with the harmonics of its model alone, so that modes must take less time than its
+    /// factors.
+    pub fn of_one_sweep(range: Range) -> Self {
         let waves = WaveCache {
-            is_of_one_sweep: true,
+            sweep: Some(range),
             ..WaveCache::default()
         };
         Self {
@@ -163,7 +165,7 @@ impl WaveCache {
         if let Some(poles) = self.poles.iter().find(|poles| quadratic_poles::are_of(poles, block)) {
             return Ok(Ok(Source::Poles(Arc::clone(poles))));
         }
-        let poles = match quadratic_poles::poles(condensed, i, interrupt)? {
+        let poles = match quadratic_poles::poles(condensed, i, self.sweep, interrupt)? {
             Ok(poles) => Arc::new(poles),
             Err(reason) => {
                 self.without_poles = Some(reason);
@@ -249,7 +251,7 @@ impl WaveCache {
             .waves
             .iter()
             .find(|known| known.is_conjugate_of(&reference, &block.matrices.mass));
-        if !self.may_have_all(model, condensed, i, &reference)? {
+        if !self.may_have_all((model, condensed, i), &reference, interrupt)? {
             return Ok(None);
         }
         let at = (i, reference, loss_factor, dampers);
@@ -262,7 +264,12 @@ impl WaveCache {
     }
 
     /// Whether all modes of a harmonic with this K_κ may be computed: there are few, or they take less time than factors.
-    fn may_have_all(&self, model: &Model, condensed: &Condensed, i: usize, reference: &Csc) -> Result<bool> {
+    fn may_have_all(
+        &self,
+        (model, condensed, i): (&Model, &Condensed, usize),
+        reference: &Csc,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool> {
         let n = condensed.ndof();
         if has_other_terms(model) {
             return Ok(false);
@@ -270,7 +277,7 @@ impl WaveCache {
         if condensed.blocks()[i].view.is_some() {
             return Ok(n <= ALL_OF_BASIS_UP_TO);
         }
-        let few = if self.is_of_one_sweep {
+        let few = if self.sweep.is_some() {
             ALL_OF_FEW_UP_TO
         } else {
             ALL_UP_TO
@@ -278,7 +285,7 @@ impl WaveCache {
         if n <= few || n > ALL_BESIDE_DEAR_FACTORS_UP_TO {
             return Ok(n <= few);
         }
-        are_all_modes_quicker(reference, condensed.tables_of_sweep())
+        are_all_modes_quicker(reference, condensed.tables_of_sweep(self.sweep, interrupt)?)
     }
 }
 

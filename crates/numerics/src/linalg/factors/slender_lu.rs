@@ -204,15 +204,16 @@ impl SlenderLu {
         Ok(())
     }
 
-    /// The flexibility R A⁻¹ Rᴴ between the `ports` R, column after column into `table`, whose columns begin `stride` apart, and
+    /// The flexibility R A⁻¹ Rᴴ between `count` ports R, column after column into `table`, whose columns begin `stride` apart, and
     /// into `moved.1` the products qᵀ A⁻¹ Rᴴ with a vector q = `moved.0`, unless that is empty. Returns the largest real or imaginary
     /// part of A⁻¹ Rᴴ.
     ///
     /// # Errors
     /// `Singular` where a solution is not finite; `OutOfMemory`; `StoppedByCaller`.
-    pub fn flexibility(
+    pub fn flexibility<'p>(
         &mut self,
-        ports: &[Entries<'_>],
+        count: usize,
+        port: impl Fn(usize) -> Entries<'p>,
         (table, stride): (&mut [Complex64], usize),
         moved: (&[Complex64], &mut [Complex64]),
         interrupt: &Interrupt<'_>,
@@ -221,15 +222,16 @@ impl SlenderLu {
             self.lanes = try_vec(self.n, [[0.0; SIDES]; 2], CONTEXT)?;
         }
         let mut lanes = core::mem::take(&mut self.lanes);
-        let found = self.flexibility_with(&mut lanes, ports, (table, stride), moved, interrupt);
+        let found = self.flexibility_with(&mut lanes, count, port, (table, stride), moved, interrupt);
         self.lanes = lanes;
         found
     }
 
-    fn flexibility_with(
+    fn flexibility_with<'p>(
         &self,
         lanes: &mut [Lanes],
-        ports: &[Entries<'_>],
+        count: usize,
+        port: impl Fn(usize) -> Entries<'p>,
         (table, stride): (&mut [Complex64], usize),
         (weights, products): (&[Complex64], &mut [Complex64]),
         interrupt: &Interrupt<'_>,
@@ -239,15 +241,16 @@ impl SlenderLu {
             return fail!(Internal, "a sparse matrix was not factored");
         };
         let places = symbolic.col_perm().arrays().1;
-        let count = |of: SparseColMatRef<'_, usize, Complex64>| of.col_ptr()[self.n];
-        let entries = count(self.factors.l_factor_unsorted()) + count(self.factors.u_factor_unsorted());
+        let stored = |of: SparseColMatRef<'_, usize, Complex64>| of.col_ptr()[self.n];
+        let entries = stored(self.factors.l_factor_unsorted()) + stored(self.factors.u_factor_unsorted());
         let tables = table.chunks_mut(SIDES * stride.max(1));
         let mut largest = 0.0_f64;
-        for ((k, inputs), table) in ports.chunks(SIDES).enumerate().zip(tables) {
-            interrupt.check_before(OPERATIONS_OF_AN_ENTRY * (entries * inputs.len()) as u64)?;
+        for (first, table) in (0..count).step_by(SIDES).zip(tables) {
+            let sides = SIDES.min(count - first);
+            interrupt.check_before(OPERATIONS_OF_AN_ENTRY * (entries * sides) as u64)?;
             lanes.fill([[0.0; SIDES]; 2]);
-            for (lane, input) in inputs.iter().enumerate() {
-                for &(p, a) in *input {
+            for lane in 0..sides {
+                for &(p, a) in port(first + lane) {
                     let [re, im] = &mut lanes[self.positions[p]];
                     re[lane] += a.re;
                     im[lane] -= a.im;
@@ -259,8 +262,8 @@ impl SlenderLu {
                 lanes,
             });
             largest = largest.max(self.arch.dispatch(Largest(lanes)));
-            for (row, output) in ports.iter().enumerate() {
-                let terms = output.iter().map(|&(p, a)| (a, &lanes[places[p]]));
+            for row in 0..count {
+                let terms = port(row).iter().map(|&(p, a)| (a, &lanes[places[p]]));
                 let sum = self.arch.dispatch(Weighted(terms));
                 for (lane, column) in table.chunks_mut(stride.max(1)).enumerate() {
                     column[row] = Complex64::new(sum[0][lane], sum[1][lane]);
@@ -269,7 +272,7 @@ impl SlenderLu {
             if !weights.is_empty() {
                 let terms = columns.iter().zip(&*lanes).map(|(&p, x)| (weights[p], x));
                 let sum = self.arch.dispatch(Weighted(terms));
-                for (lane, product) in products[k * SIDES..].iter_mut().take(inputs.len()).enumerate() {
+                for (lane, product) in products[first..].iter_mut().take(sides).enumerate() {
                     *product = Complex64::new(sum[0][lane], sum[1][lane]);
                 }
             }

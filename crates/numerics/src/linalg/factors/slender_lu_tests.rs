@@ -72,8 +72,14 @@ fn a_flexibility_side_by_side_is_made_of_solutions_one_by_one() {
     let mut products = vec![Complex64::ZERO; count];
     let lu = factor.slender().expect("factors with few entries in a column");
     let moved = (&weights[..], &mut products[..]);
-    lu.flexibility(&entries, (&mut table, stride), moved, &Interrupt::none())
-        .unwrap();
+    lu.flexibility(
+        entries.len(),
+        |port| entries[port],
+        (&mut table, stride),
+        moved,
+        &Interrupt::none(),
+    )
+    .unwrap();
     for (c, input) in ports.iter().enumerate() {
         let mut x = vec![Complex64::ZERO; n];
         for &(p, a) in input {
