@@ -102,11 +102,30 @@ def screened(predicted: Values, find: Callable[[Numbers], Values], p: float, alp
         wanted = np.argsort(-worst, kind="stable")[:many]
     more, less = _most_of(float(rises.sum()), allowed), _most_of(float(falls.sum()), allowed)
     lower, upper = at_rank(np.sort(at_least), low - less), at_rank(np.sort(at_most), high + more)
-    value = float(np.clip(np.quantile(np.where(failed, middle, values), p), lower, upper))
+    if more or less:
+        value = _expected(p, known, is_found, above)
+    else:
+        value = float(np.quantile(np.where(failed, middle, values), p))
+    value = float(np.clip(value, lower, upper))
     return Screened(value, lower, upper, known, pilot, float(rises.sum() + falls.sum()))
 
 
 Tail = Callable[[float], "Values"]
+
+
+def _expected(p: float, known: Values, is_found: NDArray[np.bool_], above: Tail) -> float:
+    """The level that a share p of values is expected not to exceed, where many are known by the errors of their predictions alone: at the
+    middle of each, they would scatter too little."""
+    finite = known[np.isfinite(known)]
+    allowed = (1 - p) * (len(finite) + np.count_nonzero(~is_found))
+    low, high = float(finite.min()), float(finite.max())
+    for _ in range(60):
+        level = (low + high) / 2
+        if np.count_nonzero(finite > level) + above(level)[~is_found].sum() > allowed:
+            low = level
+        else:
+            high = level
+    return (low + high) / 2
 
 
 def _errors(predicted: Values, known: Values, order: Numbers) -> tuple[Values, Tail, Tail]:

@@ -32,6 +32,17 @@ for name, (scatter, p, n, most) in CASES.items():
         check("few values are found", np.mean(found) < 0.2 * n, np.mean(found))
         check("the interval is hardly wider than that of all values", np.mean(widths) < 1.1, np.mean(widths))
 
+# Predictions that scatter more than the values, and tell nothing of them.
+tail, inside, told = -np.log(-np.log(0.9)), 0, []
+for draw in range(60):
+    random = np.random.default_rng(draw)
+    values = random.gumbel(size=500)
+    one = statistics.screened(10 * random.standard_normal(500), lambda at, values=values: values[at], 0.9, 0.1, 50, 100, random)
+    inside += one.lower <= tail <= one.upper
+    told.append(one.value)
+check("wild: the confidence is kept", inside >= 54, inside)
+close("the value is what errors of predictions let expect", np.median(told), tail, 0.2)
+
 # A value that cannot be had may lie anywhere: more of them widen the interval outwards.
 random = np.random.default_rng(3)
 x = random.gumbel(size=1000)
