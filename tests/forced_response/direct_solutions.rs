@@ -290,7 +290,8 @@ fn compare(case: &Case) -> FlexibilityWay {
     branch.reduction().flexibility_way
 }
 
-/// One size below and one above that at which modes or poles begin to take longer than factors along a sweep, by harmonics and contacts.
+/// One size below and one above that at which modes or poles begin to take longer than factors along a short sweep, by harmonics and
+/// contacts; and sizes at which many resonances in the range make modes the quicker ones again.
 #[test]
 fn both_ways_beside_a_change_of_the_way_are_direct_solutions() {
     use Damping::{Gyroscopic, Proportional};
@@ -305,7 +306,13 @@ fn both_ways_beside_a_change_of_the_way_are_direct_solutions() {
             let mut case = Case::new(90 + n as u64, n, Shape::Chain, damping);
             case.harmonics = harmonics;
             case.contacts = (0..contacts).map(|i| 2 + i * (n - 4) / contacts).collect();
+            let whole = case.range;
+            case.range.1 = whole.0 + 0.01 * (whole.1 - whole.0);
             assert_eq!(compare(&case), way, "{n}: {harmonics} harmonics, {contacts} contacts");
+            if matches!(damping, Proportional) {
+                case.range = whole;
+                assert_eq!(compare(&case), Modes, "{n}: {harmonics} harmonics, {contacts} contacts");
+            }
         }
     }
 }
