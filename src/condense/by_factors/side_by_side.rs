@@ -69,8 +69,12 @@ impl Workspace {
             (moved, &mut self.along),
             interrupt,
         )?;
-        if dynamic.loses_digits(condensed, i, outputs, || largest) || dynamic.should_refine(condensed, i, &self.columns)
-        {
+        let excited = self
+            .columns
+            .iter()
+            .fold(0.0_f64, |m, z| m.max(z.re.abs()).max(z.im.abs()));
+        // Tables that are too large to be refined stay as they are.
+        if dynamic.loses_digits(condensed, i, outputs, || largest.max(excited)) {
             self.loses_digits = true;
             return Ok(false);
         }
