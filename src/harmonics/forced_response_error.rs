@@ -220,7 +220,9 @@ impl<'a> ForcedEstimator<'a> {
         };
         let few = carried_harmonics::carried_from(set, FEW_HARMONICS * set.base());
         let samples = extended_options(&self.options, few).samples;
-        let reach = if few > reach && Sizes::extended(solved.condensed, few, samples).is_cheap(work) {
+        // The jumps of exchanged motions have errors of their own: see `jump_error`.
+        let may_reach = few > reach && !solved.condensed.has_exchanges();
+        let reach = if may_reach && Sizes::extended(solved.condensed, few, samples).is_cheap(work) {
             few
         } else {
             reach
