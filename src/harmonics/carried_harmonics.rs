@@ -12,8 +12,7 @@ pub(super) fn block_of(condensed: &Condensed, h: usize) -> Option<usize> {
 }
 
 /// The least harmonic to which a point of a response that carries a set is extended: with twice its harmonics, and two more of
-/// them at least. The
-/// change by the first that was left out may vanish by chance where that by the second does not.
+/// them at least. The change by the first that was left out may vanish by chance where that by the second does not.
 pub(super) fn least_extension(set: &HarmonicSet) -> usize {
     let own = set.numbers().last().copied().unwrap_or(0);
     let second = own + 2 * set.base() * set.stride();

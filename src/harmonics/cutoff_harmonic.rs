@@ -9,10 +9,11 @@
 
 use crate::condense::Condensed;
 use crate::condense::by_factors::flexibility::Workspace;
+use crate::condense::by_modes::refined_modes::dense;
 use crate::error::{Result, Status, try_vec};
 use crate::harmonics::carried_harmonics::{block_of, carried_from, carried_to};
 use crate::harmonics::estimate::CONTEXT;
-use crate::harmonics::resonant_harmonics::{COMPLIANT, ResonantHarmonics, Sought, on_pattern};
+use crate::harmonics::resonant_harmonics::{COMPLIANT, ResonantHarmonics, Sought};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::eigen;
 use crate::linalg::factors::lu::Lu;
@@ -308,8 +309,11 @@ fn highest_frequency(
     }
     let mut highest = 0.0_f64;
     for block in condensed.blocks().iter().take(2 * condensed.in_step() + 1) {
-        let k = on_pattern(block, &block.matrices.stiffness);
-        let m = on_pattern(block, &block.matrices.mass);
+        let pattern = &block.matrices.reference;
+        let (k, m) = (
+            dense(pattern, &block.matrices.stiffness)?,
+            dense(pattern, &block.matrices.mass)?,
+        );
         if (&k - k.adjoint()).norm() > 1e-9 * k.norm() {
             return Ok(None);
         }

@@ -257,7 +257,10 @@ impl<'a> ForcedEstimator<'a> {
             return Ok(None);
         };
         sought.most = most;
-        let mut core = cutoff.at(solved.omega, sought, self.interrupt)?;
+        let mut core = match known {
+            Some(known) => known.clamp(sought.from, most.max(sought.from)),
+            None => cutoff.at(solved.omega, sought, self.interrupt)?,
+        };
         if solved.condensed.has_exchanges() {
             // No harmonic is weak, and none beyond is left out of the estimate: see `jump_error`.
             core = core.max(least).min(most);

@@ -9,6 +9,7 @@
 //! The forces of contacts fall as 1/h² at least, so that a harmonic counts as far as this norm over h². One that counts as much as those
 //! behind the last of a point, whose change the estimate tells, belongs to the estimate, however far it lies above them.
 
+use crate::condense::by_modes::refined_modes::dense;
 use crate::condense::by_modes::sum_terms::Source;
 use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, try_push};
@@ -83,9 +84,14 @@ impl ResonantHarmonics {
     /// Adds the wave of the next carried harmonic from its undamped modes, which are all.
     pub fn add_pairs(&mut self, condensed: &Condensed, block: &HarmonicBlock, pairs: &Pairs) -> Result<()> {
         let n = pairs.vectors.nrows();
-        let of = |values: &[Complex64]| on_pattern(block, values);
-        let damping = of(&block.matrices.damping);
-        let structural = block.matrices.structural.as_ref().map(|values| of(values));
+        let of = |values: &[Complex64]| dense(&block.matrices.reference, values);
+        let damping = of(&block.matrices.damping)?;
+        let structural = block
+            .matrices
+            .structural
+            .as_ref()
+            .map(|values| of(values))
+            .transpose()?;
         let mut wave = Vec::new();
         for (k, &square) in pairs.values.iter().enumerate() {
             let shape = &pairs.vectors.as_slice()[k * n..(k + 1) * n];
@@ -191,16 +197,4 @@ impl ResonantHarmonics {
         let term = |mode: &Mode| mode.felt / Complex64::new(mode.square - nu * nu, nu * mode.damping + mode.structural);
         wave[near].iter().map(term).sum::<Complex64>().norm()
     }
-}
-
-/// A matrix of a block from its values at the entries of the pattern.
-pub(super) fn on_pattern(block: &HarmonicBlock, values: &[Complex64]) -> DMatrix<Complex64> {
-    let pattern = &block.matrices.reference;
-    let mut a = DMatrix::zeros(pattern.rows, pattern.cols);
-    for j in 0..pattern.cols {
-        for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
-            a[(pattern.row_idx[at], j)] = values[at];
-        }
-    }
-    a
 }

@@ -18,6 +18,16 @@ struct Case {
     tolerance: f64,
 }
 
+const LONG: Case = Case {
+    masses: 120,
+    phase: 4.0,
+    stuck: 0.034932840835783,
+    kt: 0.103142958188103,
+    limit: 715.548119028959,
+    couples: false,
+    tolerance: 1e-3,
+};
+
 const CASES: [Case; 5] = [
     Case {
         masses: 20,
@@ -46,24 +56,8 @@ const CASES: [Case; 5] = [
         couples: false,
         tolerance: 1e-4,
     },
-    Case {
-        masses: 120,
-        phase: 4.0,
-        stuck: 0.034932840835783,
-        kt: 0.103142958188103,
-        limit: 715.548119028959,
-        couples: false,
-        tolerance: 1e-3,
-    },
-    Case {
-        masses: 120,
-        phase: 4.0,
-        stuck: 0.034932840835783,
-        kt: 0.103142958188103,
-        limit: 715.548119028959,
-        couples: true,
-        tolerance: 1e-3,
-    },
+    LONG,
+    Case { couples: true, ..LONG },
 ];
 
 /// Damping ratio at the frequency of the stuck slider.
