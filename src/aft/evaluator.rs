@@ -47,6 +47,15 @@ struct Sampling {
 }
 
 impl Sampling {
+    /// The sampling that a law has by itself or by request.
+    fn of_law((requested, refinement): (usize, usize)) -> Self {
+        Self {
+            requested,
+            refinement,
+            other: false,
+        }
+    }
+
     fn of(self, samples: usize, highest: usize) -> usize {
         let factor = if self.requested == 0 { self.refinement } else { 1 };
         let samples = samples.saturating_mul(factor);
@@ -82,15 +91,10 @@ impl Evaluator {
     /// `OutOfMemory`.
     pub fn force_alone<'l>(
         set: &HarmonicSet,
-        (samples, refinement): (usize, usize),
+        samples: (usize, usize),
         laws: impl Iterator<Item = &'l dyn Law>,
     ) -> Result<Self> {
-        let sampling = Sampling {
-            requested: samples,
-            refinement,
-            other: false,
-        };
-        Self::with(set, (sampling, true), laws)
+        Self::with(set, (Sampling::of_law(samples), true), laws)
     }
 
     /// An evaluator as `new` makes it, with `refinement` times as many samples for laws without exact events where
@@ -100,21 +104,10 @@ impl Evaluator {
     /// `OutOfMemory`.
     pub fn refined<'l>(
         set: &HarmonicSet,
-        (samples, refinement): (usize, usize),
+        samples: (usize, usize),
         laws: impl Iterator<Item = &'l dyn Law>,
     ) -> Result<Self> {
-        Self::with(
-            set,
-            (
-                Sampling {
-                    requested: samples,
-                    refinement,
-                    other: false,
-                },
-                false,
-            ),
-            laws,
-        )
+        Self::with(set, (Sampling::of_law(samples), false), laws)
     }
 
     /// An evaluator with half as many samples, or twice as many where half are too few: the reference for the
@@ -124,21 +117,14 @@ impl Evaluator {
     /// `OutOfMemory`.
     pub fn otherwise<'l>(
         set: &HarmonicSet,
-        (samples, refinement): (usize, usize),
+        samples: (usize, usize),
         laws: impl Iterator<Item = &'l dyn Law>,
     ) -> Result<Self> {
-        Self::with(
-            set,
-            (
-                Sampling {
-                    requested: samples,
-                    refinement,
-                    other: true,
-                },
-                false,
-            ),
-            laws,
-        )
+        let sampling = Sampling {
+            other: true,
+            ..Sampling::of_law(samples)
+        };
+        Self::with(set, (sampling, false), laws)
     }
 
     fn with<'l>(
@@ -295,12 +281,9 @@ impl Evaluator {
     /// Samples per period at which `law` is evaluated on harmonics up to the reduced number `highest`, where the
     /// caller requests `requested` samples or, if 0, `refinement` times the law's own number; 0 where the law is
     /// exact.
-    pub fn samples_of(law: &dyn Law, highest: usize, (requested, refinement): (usize, usize)) -> usize {
-        let sampling = Sampling {
-            requested,
-            refinement,
-            other: false,
-        };
+    pub fn samples_of(law: &dyn Law, highest: usize, samples: (usize, usize)) -> usize {
+        let sampling = Sampling::of_law(samples);
+        let requested = sampling.requested;
         match law.form() {
             Form::PiecewiseLinear(_) => requested,
             Form::Spectral(_) | Form::VaryingNormalLoad(_) | Form::PlaneFriction(_) => 0,

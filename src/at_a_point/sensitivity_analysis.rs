@@ -11,6 +11,10 @@ use crate::sensitivity::{
 
 const CONTEXT: &str = "the sensitivities";
 
+/// Relative change of the amplitude over that of the frequency below which a peak is smooth and found to rounding.
+/// Kind: rounding.
+const FLAT: f64 = 1e-6;
+
 /// Result at a stored point that is differentiated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
@@ -43,7 +47,8 @@ pub struct Sensitivities {
 /// Derivatives of a result at a stored point of a branch by parameters of the model, which must be the one with which
 /// the branch was computed.
 ///
-/// One adjoint solution gives the derivatives by all parameters; the frequency of a peak takes five. They are exact for
+/// One adjoint solution gives the derivatives by all parameters; the frequency of a peak, and the amplitude of one that is a
+/// corner, take five. They are exact for
 /// the harmonics of the point: those of the contact forces follow from the exact events of their evaluation.
 ///
 /// # Errors
@@ -156,13 +161,29 @@ pub fn sensitivity_with(
     match &mut forced {
         Some(at) if is_frequency(of) => {
             let mut reasons = try_copy(&found.reasons, CONTEXT)?;
-            let amplitude = peak_amplitude(branch, of, point);
+            let amplitude = peak_amplitude(branch, of, point).unwrap_or(f64::NAN);
             found.values = peak_shift(at, motion, omega, amplitude, parameters.len(), |adjoint, values| {
                 derivatives(adjoint, values, &mut reasons)
             })?;
             found.reasons = reasons;
         }
         _ => derivatives(&adjoint, &mut found.values, &mut found.reasons)?,
+    }
+    let moves = forced.as_mut().zip(peak_amplitude(branch, of, point));
+    if let Some((at, amplitude)) = moves.filter(|_| !is_frequency(of))
+        && (omega * adjoint.by_omega).abs() > FLAT * amplitude
+    {
+        // A corner goes along the slope of its side: dA*/dp = ∂A/∂p + ∂A/∂ω dω*/dp.
+        let mut reasons = try_copy(&found.reasons, CONTEXT)?;
+        let shift = peak_shift(at, motion, omega, amplitude, parameters.len(), |adjoint, values| {
+            derivatives(adjoint, values, &mut reasons)
+        })?;
+        for ((value, reason), shift) in found.values.iter_mut().zip(&mut found.reasons).zip(shift) {
+            *value += adjoint.by_omega * shift;
+            if *reason == Reason::Exists && value.is_nan() {
+                *reason = Reason::Fold;
+            }
+        }
     }
     Ok(found)
 }
@@ -181,13 +202,14 @@ fn watched(branch: &Branch, of: Quantity) -> Option<&ResponseSeries> {
     }
 }
 
-fn peak_amplitude(branch: &Branch, of: Quantity, point: usize) -> f64 {
+/// Amplitude of the peak whose result is differentiated; `None` where it is one at a fixed frequency.
+fn peak_amplitude(branch: &Branch, of: Quantity, point: usize) -> Option<f64> {
     let peaks = match of {
-        Quantity::ResponsePeakOmega(r) => branch.responses()[r].peaks(),
-        _ => branch.peaks(),
+        Quantity::ResponsePeakOmega(r) | Quantity::Response(r) => branch.responses()[r].peaks(),
+        Quantity::PeakAmplitude | Quantity::PeakOmega => branch.peaks(),
+        _ => return None,
     };
-    let mut peaks = peaks.iter();
-    peaks.find(|p| p.point == point).map_or(f64::NAN, |p| p.amplitude)
+    peaks.iter().find(|p| p.point == point).map(|p| p.amplitude)
 }
 
 /// Refuses a result that the point does not have.

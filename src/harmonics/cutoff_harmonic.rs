@@ -9,7 +9,6 @@
 
 use crate::condense::Condensed;
 use crate::condense::by_factors::flexibility::Workspace;
-use crate::condense::by_modes::refined_modes::dense;
 use crate::error::{Result, Status, try_vec};
 use crate::harmonics::carried_harmonics::{block_of, carried_from, carried_to};
 use crate::harmonics::estimate::CONTEXT;
@@ -18,6 +17,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::dense::eigen;
 use crate::linalg::factors::lu::Lu;
 use crate::linalg::inner;
+use crate::linalg::iterative::refined_modes::dense;
 use num_complex::Complex64;
 use std::sync::Arc;
 

@@ -9,13 +9,13 @@
 //! The forces of contacts fall as 1/h² at least, so that a harmonic counts as far as this norm over h². One that counts as much as those
 //! behind the last of a point, whose change the estimate tells, belongs to the estimate, however far it lies above them.
 
-use crate::condense::by_modes::refined_modes::dense;
 use crate::condense::by_modes::sum_terms::Source;
 use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, try_push};
 use crate::harmonics::carried_harmonics::{block_of, carried_from, carried_to};
 use crate::harmonics::estimate::CONTEXT;
 use crate::linalg::dense::eigen::Pairs;
+use crate::linalg::iterative::refined_modes::dense;
 use crate::linalg::libraries::DMatrix;
 use num_complex::Complex64;
 

@@ -5,8 +5,9 @@ use crate::continuation::Point;
 use crate::error::{Result, fail, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::harmonics::{Corrected, Estimate};
+use crate::linalg::newton::linear_system::Jacobian;
 use crate::options::Range;
-use crate::problem::{InitialGuess, Problem, Residual};
+use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
 use crate::results::{Branch, ParameterData, Special, SpecialKind};
 use num_complex::Complex64;
 
@@ -18,9 +19,25 @@ const PARAMETER_STEP: f64 = 1e-5;
 
 /// A result over a parameter. Motions come first among its unknowns, in one unit of length for all harmonics and all values
 /// of the parameter.
-pub(crate) trait Tracked: Problem {
+pub(crate) trait Tracked: Jacobian {
     /// This result as the problem whose equations are solved.
     fn problem(&mut self) -> &mut dyn Problem;
+
+    /// The unknowns, with the Jacobian of the equations evaluated last.
+    fn unknowns(&self) -> &Unknowns;
+
+    /// The same unknowns, to be changed.
+    fn unknowns_mut(&mut self) -> &mut Unknowns;
+
+    /// Writes the values of the equations at unknowns `u` and the parameter p, `fully` with their Jacobian and the result. Returns
+    /// their scale.
+    fn equations(&mut self, u: &[f64], p: f64, fully: bool, values: &mut [f64]) -> Result<f64>;
+
+    /// The result at the point evaluated last, and its change along a direction: that of `u`, then of the parameter.
+    fn result(&self, u: &[f64], direction: &[f64]) -> (f64, f64);
+
+    /// Curvature of the result evaluated last, where what is followed ends as that becomes positive: a peak may become a minimum.
+    fn curvature(&self) -> Option<f64>;
 
     /// Number of unknowns that are motions.
     fn motions(&self) -> usize;
@@ -46,11 +63,38 @@ pub(crate) trait Tracked: Problem {
         kind: Option<SpecialKind>,
     ) -> Result<(Special, f64)>;
 
-    /// Observes the reciprocal of the result, whose maxima are the minima of the result.
-    fn set_reciprocal(&mut self, is_reciprocal: bool);
+    /// Whether a solved point still is what is followed.
+    fn exists(&mut self, point: &Point) -> Result<bool> {
+        if self.curvature().is_none() {
+            return Ok(true);
+        }
+        let mut values = try_vec(point.unknowns().len(), 0.0, CONTEXT)?;
+        self.equations(point.unknowns(), point.parameter(), true, &mut values)?;
+        Ok(self.curvature().is_none_or(|curvature| curvature <= 0.0))
+    }
+}
 
-    /// Whether the point solved last still is what is followed: a peak may have become a minimum.
-    fn exists(&mut self, point: &Point) -> Result<bool>;
+impl<T: Tracked> Problem for T {
+    fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Residual) -> Result<()> {
+        let step = self.unknowns().step;
+        by_differences(out, p, step, |p, values| self.equations(u, p, false, values))?;
+        out.scale = self.equations(u, p, true, &mut out.values)?;
+        out.rounding = 0.0;
+        Ok(())
+    }
+
+    fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
+        let (value, change) = self.result(u, direction);
+        self.unknowns().observe(value, change)
+    }
+
+    fn initial_guess(&mut self, kind: InitialGuess, _p: f64, u: &mut [f64]) -> Result<bool> {
+        Ok(self.unknowns().initial_guess(kind, u))
+    }
+
+    fn homotopy(&mut self, _p: f64, _u: &[f64]) -> Result<Option<Homotopy<'_>>> {
+        Ok(None)
+    }
 }
 
 /// The solution from which a result is followed.
@@ -68,7 +112,7 @@ pub(crate) struct FirstMotion<'a> {
 ///
 /// # Errors
 /// Those of the equations at p.
-pub(crate) fn by_differences(
+fn by_differences(
     out: &mut Residual,
     p: f64,
     step: f64,

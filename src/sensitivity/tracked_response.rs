@@ -23,16 +23,16 @@ use crate::linalg::newton::linear_system::Jacobian;
 use crate::model::Model;
 use crate::options::Range;
 use crate::options::{Response, SolverOptions};
+use crate::problem::Problem;
 use crate::problem::epmc::OMEGA_UNIT;
 use crate::problem::gauges::Gauges;
-use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
 use crate::results::{Branch, ParameterData, Record, Special, SpecialKind};
 use crate::sensitivity::adjoint::CONTEXT;
 use crate::sensitivity::design::design;
 use crate::sensitivity::fold_point::Borders;
 use crate::sensitivity::forced_point::ForcedPoint;
 use crate::sensitivity::parameter::Parameter;
-use crate::sensitivity::tracked::{FirstMotion, Tracked, Unknowns, by_differences};
+use crate::sensitivity::tracked::{FirstMotion, Tracked, Unknowns};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -208,6 +208,29 @@ impl Tracked for TrackedResponse<'_> {
         self
     }
 
+    fn unknowns(&self) -> &Unknowns {
+        &self.unknowns
+    }
+
+    fn unknowns_mut(&mut self) -> &mut Unknowns {
+        &mut self.unknowns
+    }
+
+    fn equations(&mut self, u: &[f64], p: f64, fully: bool, values: &mut [f64]) -> Result<f64> {
+        self.evaluate_equations(u, p, fully, values)
+    }
+
+    /// The amplitude; its derivative is taken along the curve of solutions.
+    fn result(&self, u: &[f64], direction: &[f64]) -> (f64, f64) {
+        let mut change = dot(&self.last.gradient[..u.len()], &direction[..u.len()]);
+        change += self.last.gradient[u.len()] * direction[u.len()];
+        (self.last.amplitude, change)
+    }
+
+    fn curvature(&self) -> Option<f64> {
+        (self.followed.kind == ResponsePoint::Peak).then_some(self.last.curvature)
+    }
+
     fn motions(&self) -> usize {
         self.unknowns.len() - usize::from(self.is_free())
     }
@@ -280,7 +303,7 @@ impl Tracked for TrackedResponse<'_> {
     ) -> Result<(Special, f64)> {
         let (u, p) = (point.unknowns(), point.parameter());
         let mut values = try_vec(u.len(), 0.0, CONTEXT)?;
-        self.equations(u, p, true, &mut values)?;
+        self.evaluate_equations(u, p, true, &mut values)?;
         let omega = self.frequency(u);
         let At { condensed, .. } = self.at(p, omega)?;
         let motion = self.own_motion(u, &condensed)?;
@@ -316,19 +339,6 @@ impl Tracked for TrackedResponse<'_> {
         };
         Ok((special, sampling_error))
     }
-
-    fn set_reciprocal(&mut self, is_reciprocal: bool) {
-        self.unknowns.is_reciprocal = is_reciprocal;
-    }
-
-    fn exists(&mut self, point: &Point) -> Result<bool> {
-        if self.followed.kind != ResponsePoint::Peak {
-            return Ok(true);
-        }
-        let mut values = try_vec(point.unknowns().len(), 0.0, CONTEXT)?;
-        self.equations(point.unknowns(), point.parameter(), true, &mut values)?;
-        Ok(self.last.curvature <= 0.0)
-    }
 }
 
 impl Jacobian for TrackedResponse<'_> {
@@ -339,31 +349,5 @@ impl Jacobian for TrackedResponse<'_> {
     fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) -> Result<()> {
         self.unknowns.fill(matrix, active);
         Ok(())
-    }
-}
-
-impl Problem for TrackedResponse<'_> {
-    fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Residual) -> Result<()> {
-        by_differences(out, p, self.unknowns.step, |p, values| {
-            self.equations(u, p, false, values)
-        })?;
-        out.scale = self.equations(u, p, true, &mut out.values)?;
-        out.rounding = 0.0;
-        Ok(())
-    }
-
-    /// Observes the amplitude; its derivative is taken along the curve of solutions.
-    fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
-        let mut change = dot(&self.last.gradient[..u.len()], &direction[..u.len()]);
-        change += self.last.gradient[u.len()] * direction[u.len()];
-        self.unknowns.observe(self.last.amplitude, change)
-    }
-
-    fn initial_guess(&mut self, kind: InitialGuess, _p: f64, u: &mut [f64]) -> Result<bool> {
-        Ok(self.unknowns.initial_guess(kind, u))
-    }
-
-    fn homotopy(&mut self, _p: f64, _u: &[f64]) -> Result<Option<Homotopy<'_>>> {
-        Ok(None)
     }
 }

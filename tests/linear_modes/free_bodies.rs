@@ -69,6 +69,24 @@ fn the_rigid_motion_is_no_damped_mode() {
     }
 }
 
+/// Under damping αM the rigid motion has the eigenvalues 0 and −α, which is no vibration.
+#[test]
+fn the_rigid_motion_under_mass_damping_is_no_damped_mode() {
+    const ALPHA: f64 = 0.2;
+    for n in [12, 60, 99, 100, 101, 130, 260, 400] {
+        let mut model = free_chain(n, None);
+        model.set_rayleigh(ALPHA, 0.0).unwrap();
+        let found = damped_modes(&model, 0, LinearContacts::Free, 5, &mut Hooks::default()).unwrap();
+        assert_eq!(found.count(), 5, "{n}");
+        for k in 0..5 {
+            let own = natural(n, k + 1);
+            let right = Complex64::new(-0.5 * ALPHA, (own * own - 0.25 * ALPHA * ALPHA).sqrt());
+            let off = (found.eigenvalue[k] - right).norm() / right.norm();
+            assert!(off < 1e-9, "{n}, mode {k}: {} {right}", found.eigenvalue[k]);
+        }
+    }
+}
+
 /// With x + iy both directions are one chain: λ² ± igλ + ω²(1 + βλ) = 0. The rigid motion turns with λ = ig.
 #[test]
 fn a_free_body_under_gyroscopic_forces_has_its_whirls() {

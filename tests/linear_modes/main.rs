@@ -7,6 +7,7 @@ mod damped_mode;
 mod families;
 mod free_bodies;
 mod natural_frequencies;
+mod penalties;
 mod rotating_modes;
 mod rotating_wheel;
 mod senses_of_crossings;

@@ -7,6 +7,7 @@ mod absent;
 mod batch;
 mod batch_of_chains;
 mod complex_responses;
+mod corner_peaks;
 mod cost;
 mod design;
 mod differences;

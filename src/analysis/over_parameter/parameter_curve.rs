@@ -220,9 +220,9 @@ impl<'a> CurveRecorder<'a> {
             let level = self.followed.resolution();
             let (a, b) = (self.followed.transfer(a, level_a)?, self.followed.transfer(b, level_b)?);
             let mut locator = Locator::new(a.unknowns().len(), self.settings)?;
-            self.followed.tracked().set_reciprocal(is_reciprocal);
+            self.followed.tracked().unknowns_mut().is_reciprocal = is_reciprocal;
             let located = search(&mut locator, self.followed.problem(), &a, &b);
-            self.followed.tracked().set_reciprocal(false);
+            self.followed.tracked().unknowns_mut().is_reciprocal = false;
             let Some(mut point) = located? else { break };
             if is_reciprocal {
                 point.amplitude = point.amplitude.inv();

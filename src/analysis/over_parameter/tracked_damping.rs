@@ -24,10 +24,10 @@ use crate::model::Model;
 use crate::options::Range;
 use crate::options::{DampingForm, SolverOptions};
 use crate::problem::epmc::{Epmc, Gauge, LinearMode};
-use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
+use crate::problem::{Problem, Residual};
 use crate::results::stored::mode_branch::ModePoint;
 use crate::results::{Branch, ParameterData, Record, Special, SpecialKind};
-use crate::sensitivity::tracked::{FirstMotion, Tracked, Unknowns, by_differences};
+use crate::sensitivity::tracked::{FirstMotion, Tracked, Unknowns};
 use crate::sensitivity::{
     ModePointAdjoint, ModeQuantity, Parameter, SampledModel, TotalDerivative, central_differences, design,
 };
@@ -185,7 +185,7 @@ impl<'a> TrackedDamping<'a> {
 
     /// Evaluates the equations at one value of the parameter; returns the scale of the residual, and writes derivatives
     /// and results if `fully`.
-    fn equations(&mut self, u: &[f64], p: f64, fully: bool, values: &mut [f64]) -> Result<f64> {
+    fn evaluate_equations(&mut self, u: &[f64], p: f64, fully: bool, values: &mut [f64]) -> Result<f64> {
         let (m, n) = (self.motions(), u.len());
         let x = n - 1;
         let at = self.at(p)?;
@@ -307,6 +307,27 @@ impl Tracked for TrackedDamping<'_> {
         self
     }
 
+    fn unknowns(&self) -> &Unknowns {
+        &self.unknowns
+    }
+
+    fn unknowns_mut(&mut self) -> &mut Unknowns {
+        &mut self.unknowns
+    }
+
+    fn equations(&mut self, u: &[f64], p: f64, fully: bool, values: &mut [f64]) -> Result<f64> {
+        self.evaluate_equations(u, p, fully, values)
+    }
+
+    /// The damping ratio. At its maximum it changes with the parameter alone.
+    fn result(&self, u: &[f64], direction: &[f64]) -> (f64, f64) {
+        (self.last.damping, self.last.d_damping * direction[u.len()])
+    }
+
+    fn curvature(&self) -> Option<f64> {
+        Some(self.last.curvature)
+    }
+
     fn motions(&self) -> usize {
         self.unknowns.len() - 3
     }
@@ -373,7 +394,7 @@ impl Tracked for TrackedDamping<'_> {
     ) -> Result<(Special, f64)> {
         let (u, p) = (point.unknowns(), point.parameter());
         let mut values = try_vec(u.len(), 0.0, CONTEXT)?;
-        self.equations(u, p, true, &mut values)?;
+        self.evaluate_equations(u, p, true, &mut values)?;
         let At { condensed, linear, .. } = self.at(p)?;
         let (own, log10) = (self.own(u, &condensed)?, self.log10(u));
         let omega = Epmc::frequency_and_damping(&linear, &own).omega;
@@ -430,16 +451,6 @@ impl Tracked for TrackedDamping<'_> {
         };
         Ok((special, sampling_error))
     }
-
-    fn set_reciprocal(&mut self, is_reciprocal: bool) {
-        self.unknowns.is_reciprocal = is_reciprocal;
-    }
-
-    fn exists(&mut self, point: &Point) -> Result<bool> {
-        let mut values = try_vec(point.unknowns().len(), 0.0, CONTEXT)?;
-        self.equations(point.unknowns(), point.parameter(), true, &mut values)?;
-        Ok(self.last.curvature <= 0.0)
-    }
 }
 
 impl Jacobian for TrackedDamping<'_> {
@@ -450,30 +461,5 @@ impl Jacobian for TrackedDamping<'_> {
     fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) -> Result<()> {
         self.unknowns.fill(matrix, active);
         Ok(())
-    }
-}
-
-impl Problem for TrackedDamping<'_> {
-    fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Residual) -> Result<()> {
-        by_differences(out, p, self.unknowns.step, |p, values| {
-            self.equations(u, p, false, values)
-        })?;
-        out.scale = self.equations(u, p, true, &mut out.values)?;
-        out.rounding = 0.0;
-        Ok(())
-    }
-
-    /// Observes the damping ratio. At its maximum it changes with the parameter alone.
-    fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
-        let change = self.last.d_damping * direction[u.len()];
-        self.unknowns.observe(self.last.damping, change)
-    }
-
-    fn initial_guess(&mut self, kind: InitialGuess, _p: f64, u: &mut [f64]) -> Result<bool> {
-        Ok(self.unknowns.initial_guess(kind, u))
-    }
-
-    fn homotopy(&mut self, _p: f64, _u: &[f64]) -> Result<Option<Homotopy<'_>>> {
-        Ok(None)
     }
 }

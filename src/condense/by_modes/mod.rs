@@ -8,7 +8,6 @@ pub mod modal_table;
 pub mod mode_flexibility;
 pub(crate) mod mode_sums;
 pub(crate) mod quadratic_poles;
-pub(crate) mod refined_modes;
 pub(crate) mod single_contact;
 pub(crate) mod sum_terms;
 pub mod wave_cache;

@@ -16,7 +16,6 @@
 //! With a speed Ω = pω the matrices of ω² join M: M − p²K₁/h² − ipG/h.
 
 use crate::condense::blocks::harmonic_block::{Artificial, HarmonicBlock};
-use crate::condense::by_modes::refined_modes::{self, dense};
 use crate::condense::by_modes::wave_poles::{Key, WavePoles};
 use crate::condense::on_a_basis::basis_outlook::are_all_poles_quicker;
 use crate::condense::{Condensed, FlexibilityWay};
@@ -26,6 +25,7 @@ use crate::linalg::dense::complex_products::{self, multiply_adjoint};
 use crate::linalg::dense::general_eigen;
 use crate::linalg::factors::factor::is_dense;
 use crate::linalg::factors::lu::Lu;
+use crate::linalg::iterative::refined_modes::{self, dense};
 use crate::linalg::libraries::DMatrix;
 use crate::options::Range;
 use num_complex::Complex64;

@@ -8,14 +8,15 @@ use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::dense::eigen::{self, Pairs};
 use crate::linalg::exact_sums::quadratic::{QUADRATIC_ROUNDING, form, quadratic, terms};
 use crate::linalg::iterative::lanczos;
-use crate::linalg::libraries::DMatrix;
+use crate::linalg::iterative::refined_modes::dense;
 use crate::linalg::sparse_storage::definite::resists_all_motion;
 use crate::linalg::sparse_storage::held_rows::MovingRows;
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
 use crate::model::matrices::structure::MatrixKind;
 use crate::model::matrices::wave::Wave;
-use crate::model::natural_modes::quadratic_problem::Quadratic;
+use crate::model::natural_modes::all_undamped::all_undamped;
+use crate::model::natural_modes::quadratic_problem::{Quadratic, check_rounding};
 use crate::model::natural_modes::static_tangents::StaticTangents;
 use num_complex::Complex64;
 use std::borrow::Cow;
@@ -279,6 +280,8 @@ impl Pencil {
         for (value, shape) in pairs.values.iter_mut().zip(pairs.vectors.column_iter()) {
             interrupt.check()?;
             *value = self.quotient(shape.as_slice());
+            let forces = terms(&self.stiffness, shape.as_slice());
+            check_rounding("stiffness", forces, *value * quadratic(&self.mass, shape.as_slice()))?;
         }
         if self.weight.is_some() {
             for mut shape in pairs.vectors.column_iter_mut() {
@@ -336,20 +339,15 @@ impl Pencil {
         if let Some(gyroscopic) = &self.gyroscopic {
             return self.gyroscopic_modes(gyroscopic, n, interrupt);
         }
+        let Some(weight) = &self.weight else {
+            return self.modes(&all_undamped(&self.stiffness, &self.mass, interrupt)?);
+        };
         // The eigensolver allocates through nalgebra, which aborts the process when memory is exhausted.
         check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(LINEAR_MODES_EIGEN_COPIES), CONTEXT)?;
-        let dense = |a: &Csc| {
-            let mut d = DMatrix::<Complex64>::zeros(n, n);
-            a.add_to_dense(Complex64::ONE, d.as_mut_slice());
-            d
-        };
-        let Some(weight) = &self.weight else {
-            let pairs = eigen::generalised(&dense(&self.stiffness), &dense(&self.mass), interrupt)?;
-            return self.modes(&pairs);
-        };
+        let whole = |a: &Csc| dense(a, &a.values);
         // At a speed tied to the frequency the inertia may be negative: such a motion has no frequency. The pencil is
         // turned round, M φ = φ/ω² K, where K is positive definite.
-        let pairs = match eigen::generalised(&dense(&self.mass), &dense(&self.stiffness), interrupt) {
+        let pairs = match eigen::generalised(&whole(&self.mass)?, &whole(&self.stiffness)?, interrupt) {
             Err(e) if e.status == Status::NotPositiveDefinite => {
                 return fail!(
                     NotPositiveDefinite,

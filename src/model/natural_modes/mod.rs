@@ -1,5 +1,6 @@
 //! Natural modes and resonances of the structure with its contacts stuck or removed.
 
+pub(crate) mod all_undamped;
 pub(crate) mod contact_modes;
 pub mod damped_mode;
 pub mod linear_modes;

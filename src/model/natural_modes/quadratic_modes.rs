@@ -8,13 +8,13 @@
 
 use crate::error::{Result, Status, check_memory, fail, try_copy, try_extend, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::dense::eigen;
-use crate::linalg::exact_sums::quadratic::quadratic;
+use crate::linalg::exact_sums::quadratic::{ComplexSum, product, quadratic, terms};
 use crate::linalg::factors::factor::Factor;
 use crate::linalg::libraries::{DMatrix, Schur};
 use crate::linalg::sparse_storage::sparse::Csc;
+use crate::model::natural_modes::all_undamped::all_undamped;
 use crate::model::natural_modes::linear_modes::{ALL_MODES_UP_TO, finds_all};
-use crate::model::natural_modes::quadratic_problem::{Pair, QUADRATIC_PROBLEM_REAL, Quadratic, is_one};
+use crate::model::natural_modes::quadratic_problem::{Pair, QUADRATIC_PROBLEM_REAL, Quadratic, check_rounding, is_one};
 use crate::model::natural_modes::quadratic_search::lowest_by_search;
 use num_complex::Complex64;
 
@@ -33,6 +33,14 @@ const QUADRATIC_MODES_CORRECTIONS: usize = 20;
 /// Change of an eigenvalue by its correction, relative to it and to the distance of the next one, beyond which it has become another.
 /// Kind: tuned; measured on: not recorded.
 const BECOMES_OTHER: (f64, f64) = (1e-7, 0.1);
+
+/// Modulus of an eigenvalue, over the norm of all of a small structure, from which Schur's form has twelve digits.
+/// Kind: rounding.
+const QUADRATIC_MODES_EXACT: f64 = 1e-4;
+
+/// Frequency of a motion, over the highest, below which it is scaled as if it had that.
+/// Kind: rounding.
+const QUADRATIC_MODES_FLOOR: f64 = 1e-10;
 
 /// Square matrices of the order 2r that Schur's form holds at a time.
 /// Kind: fixed.
@@ -62,8 +70,8 @@ impl Quadratic<'_> {
         } else {
             lowest_by_search(self, &hermitian, count, interrupt)?
         };
-        let mut pairs = match searched {
-            Some(pairs) => pairs,
+        let (mut pairs, size) = match searched {
+            Some(pairs) => (pairs, f64::INFINITY),
             None => self.projected(&self.basis(&hermitian, interrupt)?, interrupt)?,
         };
         pairs.sort_by(|a, b| a.0.im.total_cmp(&b.0.im));
@@ -73,7 +81,7 @@ impl Quadratic<'_> {
                 break;
             }
             interrupt.check()?;
-            let better = if is_small {
+            let better = if is_small && pair.0.norm() >= QUADRATIC_MODES_EXACT * size {
                 (pair.0, try_copy(&pair.1, CONTEXT)?)
             } else {
                 self.improved(&pairs, k, &found, interrupt)?
@@ -82,7 +90,11 @@ impl Quadratic<'_> {
                 continue;
             };
             let mut shape = better.1;
-            let norm = quadratic(self.mass, &shape).sqrt();
+            let square = quadratic(self.mass, &shape);
+            let size = eigenvalue.norm();
+            check_rounding("stiffness", terms(self.stiffness, &shape), size * size * square)?;
+            check_rounding("damping", terms(self.damping, &shape), size * square)?;
+            let norm = square.sqrt();
             for x in &mut shape {
                 *x /= norm;
             }
@@ -111,35 +123,50 @@ impl Quadratic<'_> {
     fn basis(&self, hermitian: &Csc, interrupt: &Interrupt<'_>) -> Result<DMatrix<Complex64>> {
         let n = self.mass.rows;
         check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(2 * QUADRATIC_MODES_COPIES), CONTEXT)?;
-        Ok(eigen::generalised(&dense(hermitian), &dense(self.mass), interrupt)?.vectors)
+        Ok(all_undamped(hermitian, self.mass, interrupt)?.vectors)
     }
 
-    /// Eigenvalues and shapes of the problem projected on the columns of `basis`, which are orthonormal in M.
-    fn projected(&self, basis: &DMatrix<Complex64>, interrupt: &Interrupt<'_>) -> Result<Vec<Pair>> {
+    /// Eigenvalues and shapes of the problem projected on the columns of `basis`, which are orthonormal in M; and the norm of all
+    /// eigenvalues, of which each has the rounding error.
+    fn projected(&self, basis: &DMatrix<Complex64>, interrupt: &Interrupt<'_>) -> Result<(Vec<Pair>, f64)> {
         let (n, r) = (basis.nrows(), basis.ncols());
         check_memory::<Complex64>((4 * r * r).saturating_mul(QUADRATIC_MODES_COPIES), CONTEXT)?;
-        let project = |a: &Csc| -> Result<DMatrix<Complex64>> {
+        let mut sums = try_vec(n, ComplexSum::default(), CONTEXT)?;
+        let mut project = |a: &Csc| -> Result<DMatrix<Complex64>> {
             let mut moved = DMatrix::zeros(n, r);
             for (from, mut to) in basis.column_iter().zip(moved.column_iter_mut()) {
                 interrupt.check()?;
-                a.multiply_add(Complex64::ONE, from.as_slice(), to.as_mut_slice());
+                // In twice the precision: soft motions hardly strain stiff springs.
+                sums.fill(ComplexSum::default());
+                product(a, &a.values, from.as_slice(), &mut sums);
+                for (to, sum) in to.iter_mut().zip(&sums) {
+                    *to = sum.total();
+                }
             }
             Ok(basis.adjoint() * moved)
         };
         let (k, c) = (project(self.stiffness)?, project(self.damping)?);
-        // The unit of frequencies makes both halves of the state alike in size.
-        let unit = (k.norm() / (r.max(1) as f64).sqrt()).sqrt();
-        if unit == 0.0 || !unit.is_finite() {
-            return Ok(Vec::new());
+        // In energy coordinates, (Ω p, λ p) with the stiffness Ω² of each motion, no entry is larger than a frequency, and stiff motions
+        // do not spoil soft ones.
+        let mut frequencies = try_vec(r, 0.0, CONTEXT)?;
+        for (omega, column) in frequencies.iter_mut().zip(k.column_iter()) {
+            *omega = column.iter().fold(0.0_f64, |most, k| most.max(k.norm())).sqrt();
+        }
+        let highest = frequencies.iter().copied().fold(0.0, f64::max);
+        if highest == 0.0 || !highest.is_finite() {
+            return Ok((Vec::new(), highest));
+        }
+        for omega in &mut frequencies {
+            *omega = omega.max(QUADRATIC_MODES_FLOOR * highest);
         }
         let mut companion = DMatrix::<Complex64>::zeros(2 * r, 2 * r);
-        companion.view_mut((0, r), (r, r)).fill_with_identity();
-        companion
-            .view_mut((r, 0), (r, r))
-            .copy_from(&(k * Complex64::from(-1.0 / (unit * unit))));
-        companion
-            .view_mut((r, r), (r, r))
-            .copy_from(&(c * Complex64::from(-1.0 / unit)));
+        for (j, &omega) in frequencies.iter().enumerate() {
+            companion[(j, r + j)] = omega.into();
+            for i in 0..r {
+                companion[(r + i, j)] = -k[(i, j)] / omega;
+                companion[(r + i, r + j)] = -c[(i, j)];
+            }
+        }
         let Some(schur) = Schur::try_new(companion, f64::EPSILON, QUADRATIC_MODES_ITERATIONS * 2 * r) else {
             return fail!(NoConvergence, "the eigenvalues of the damped structure were not found");
         };
@@ -168,16 +195,16 @@ impl Quadratic<'_> {
             }
             let mut shape = try_vec(n, Complex64::ZERO, CONTEXT)?;
             for mode in 0..r {
-                let part: Complex64 = (0..=j).map(|l| q[(mode, l)] * y[l]).sum();
+                let part = (0..=j).map(|l| q[(mode, l)] * y[l]).sum::<Complex64>() / frequencies[mode];
                 for (x, phi) in shape.iter_mut().zip(basis.column(mode).iter()) {
                     *x += part * phi;
                 }
             }
-            if let Some(eigenvalue) = self.as_mode(value * unit, &shape) {
+            if let Some(eigenvalue) = self.as_mode(value, &shape) {
                 try_push(&mut pairs, (eigenvalue, shape), CONTEXT)?;
             }
         }
-        Ok(pairs)
+        Ok((pairs, size))
     }
 
     /// Newton's method on A(λ) x = 0, vᴴ x = 1 with v = M x₀, with the factors at a shift nearby.
@@ -191,8 +218,7 @@ impl Quadratic<'_> {
         for _ in 0..QUADRATIC_MODES_CORRECTIONS {
             interrupt.check()?;
             factor.factor(&self.matrix(eigenvalue * (1.0 + QUADRATIC_MODES_OFFSET))?, interrupt)?;
-            let mut columns = try_vec(n, Complex64::ZERO, CONTEXT)?;
-            self.matrix(eigenvalue)?.multiply_add(Complex64::ONE, &x, &mut columns);
+            let mut columns = self.times(eigenvalue, &x)?;
             try_extend(&mut columns, &self.slope_times(eigenvalue, &x)?, CONTEXT)?;
             factor.solve(&mut columns, false, interrupt)?;
             let (residual, slope) = columns.split_at(n);
@@ -221,10 +247,4 @@ impl Quadratic<'_> {
         }
         Ok((eigenvalue, x))
     }
-}
-
-fn dense(a: &Csc) -> DMatrix<Complex64> {
-    let mut d = DMatrix::zeros(a.rows, a.cols);
-    a.add_to_dense(Complex64::ONE, d.as_mut_slice());
-    d
 }

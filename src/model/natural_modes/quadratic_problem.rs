@@ -1,15 +1,15 @@
 //! The quadratic eigenproblem (λ²M + λC + K) x = 0 of a damped structure, and which of its eigenvalues are modes.
 
-use crate::error::Result;
-use crate::linalg::exact_sums::quadratic::{QUADRATIC_ROUNDING, quadratic, terms};
+use crate::error::{Result, fail, try_vec};
+use crate::linalg::exact_sums::quadratic::{ComplexSum, QUADRATIC_ROUNDING, product, quadratic, terms};
 use crate::linalg::inner;
 use crate::linalg::sparse_storage::held_rows::MovingRows;
 use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use num_complex::Complex64;
 
-/// Imaginary part over the modulus below which an eigenvalue is no vibration.
+/// Imaginary part over the modulus below which an eigenvalue is no vibration: the root of rounding splits double ones.
 /// Kind: rounding.
-pub const QUADRATIC_PROBLEM_REAL: f64 = 1e-9;
+pub const QUADRATIC_PROBLEM_REAL: f64 = 1e-7;
 
 /// Relative distance of eigenvalues, and the square of the sine between their vectors, below which two are one.
 /// Kind: rounding.
@@ -107,12 +107,59 @@ impl Quadratic<'_> {
         )
     }
 
+    /// Product (λ²M + λC + K) x, whose terms may cancel beside stiff springs.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn times(&self, eigenvalue: Complex64, x: &[Complex64]) -> Result<Vec<Complex64>> {
+        let mut sums = try_vec(x.len(), ComplexSum::default(), CONTEXT)?;
+        let mut y = try_vec(x.len(), Complex64::ZERO, CONTEXT)?;
+        for (a, factor) in [
+            (self.stiffness, Complex64::ONE),
+            (self.damping, eigenvalue),
+            (self.mass, eigenvalue * eigenvalue),
+        ] {
+            sums.fill(ComplexSum::default());
+            product(a, &a.values, x, &mut sums);
+            for (y, sum) in y.iter_mut().zip(&sums) {
+                *y += factor * sum.total();
+            }
+        }
+        Ok(y)
+    }
+
     /// Product (2λM + C) x, the slope of the matrix by λ.
     pub fn slope_times(&self, eigenvalue: Complex64, x: &[Complex64]) -> Result<Vec<Complex64>> {
         let mut y = self.damping.times(x, CONTEXT)?;
         self.mass.multiply_add(2.0 * eigenvalue, x, &mut y);
         Ok(y)
     }
+}
+
+/// Rounding of forces as stored, over those of a mode, from which little is known of it.
+/// Kind: rounding.
+const QUADRATIC_PROBLEM_LOST: f64 = 1e-2;
+/// Rounding as above, from which the mode is a motion that nothing holds.
+/// Kind: rounding.
+const QUADRATIC_PROBLEM_ALL_LOST: f64 = 0.5;
+
+/// Refuses a mode whose forces are lost in the rounding of a matrix as it is stored: those of springs beside a penalty. `terms` is the sum of
+/// the moduli of the terms of its energy, and `energy` what is left of them.
+///
+/// # Errors
+/// `NoConvergence`.
+pub fn check_rounding(matrix: &str, terms: f64, energy: f64) -> Result<()> {
+    // Half of the last digit of the entries on the diagonal, which have half of the terms beside a link.
+    let lost = 0.25 * f64::EPSILON * terms / energy.abs();
+    // A motion that nothing holds has rounding alone.
+    if lost > QUADRATIC_PROBLEM_LOST && lost < QUADRATIC_PROBLEM_ALL_LOST {
+        return fail!(
+            NoConvergence,
+            "rounding of the {matrix} as stored is {lost:.1e} of the forces of a mode: some entries are far above those of the structure, as \
+             a penalty's; make what they connect one degree of freedom"
+        );
+    }
+    Ok(())
 }
 
 /// Whether two pairs are the same mode.

@@ -13,6 +13,7 @@ use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::matrices::structure::MatrixKind;
 use crate::model::matrices::wave::Wave;
+use crate::model::natural_modes::all_undamped::all_undamped;
 use crate::model::natural_modes::linear_modes::ALL_MODES_UP_TO;
 use crate::model::natural_modes::linear_modes::ContactState;
 use crate::model::natural_modes::quadratic_problem::Quadratic;
@@ -298,14 +299,7 @@ fn modes_within(k: &Csc, m: &Csc, range: Range, interrupt: &Interrupt<'_>) -> Re
             _ => {}
         }
     }
-    // The eigensolver allocates through nalgebra, which aborts the process when memory is exhausted.
-    check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(RESONANCES_EIGEN_COPIES), CONTEXT)?;
-    let dense = |a: &Csc| {
-        let mut d = DMatrix::<Complex64>::zeros(n, n);
-        a.add_to_dense(Complex64::ONE, d.as_mut_slice());
-        d
-    };
-    eigen::generalised(&dense(k), &dense(m), interrupt).map(Some)
+    all_undamped(k, m, interrupt).map(Some)
 }
 
 /// Damping matrices, from which half widths follow.

@@ -24,7 +24,7 @@ struct Place<'b> {
 impl TrackedResponse<'_> {
     /// Evaluates the equations at one value of the parameter; returns the scale of the residual, and writes derivatives
     /// and results if `fully`.
-    pub(super) fn equations(&mut self, u: &[f64], p: f64, fully: bool, values: &mut [f64]) -> Result<f64> {
+    pub(super) fn evaluate_equations(&mut self, u: &[f64], p: f64, fully: bool, values: &mut [f64]) -> Result<f64> {
         let m = self.motions();
         let omega = self.frequency(u);
         let at = self.at(p, omega)?;

@@ -49,14 +49,12 @@ const CONTEXT: &str = "the eigenvectors";
 pub fn lowest(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Result<Pairs> {
     interrupt.check()?;
     let n = k.rows;
-    let stiff: f64 = (0..n).map(|i| k.get(i, i).re.abs()).sum();
-    let heavy: f64 = (0..n).map(|i| m.get(i, i).re).sum();
-    if heavy <= 0.0 {
+    if (0..n).map(|i| m.get(i, i).re).sum::<f64>() <= 0.0 {
         return fail!(NotPositiveDefinite, "mass matrix is zero: there is no vibration mode");
     }
     // A shift far below the typical stiffness per mass makes K + σM regular for rigid bodies and leaves the lowest
     // eigenvalues well separated from the rest.
-    let BelowAll { inverse, shift, place } = below_all(k, m, 1e-7 * stiff / heavy, interrupt)?;
+    let BelowAll { inverse, shift, place } = below_all(k, m, 1e-7 * typical_stiffness(k, m), interrupt)?;
     if place == Place::Further && n <= DENSE_IF_HARD {
         return all_of(k, m, count, interrupt);
     }
@@ -106,6 +104,26 @@ pub fn lowest(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Resu
     search.found.sort_by(|a, b| b.0.total_cmp(&a.0));
     search.found.truncate(count);
     search.pairs(shift)
+}
+
+/// Typical stiffness of a degree of freedom over its mass: that of all together, or their geometric mean, which a few under a
+/// penalty hardly change.
+fn typical_stiffness(k: &Csc, m: &Csc) -> f64 {
+    let (mut stiff, mut heavy, mut logarithms, mut count) = (0.0, 0.0, 0.0, 0.0);
+    for (stiffness, mass) in (0..k.rows).map(|i| (k.get(i, i).re.abs(), m.get(i, i).re)) {
+        stiff += stiffness;
+        heavy += mass;
+        if stiffness > 0.0 && mass > 0.0 {
+            logarithms += (stiffness / mass).ln();
+            count += 1.0;
+        }
+    }
+    let together: f64 = stiff / heavy;
+    if count > 0.0 {
+        together.min((logarithms / count).exp())
+    } else {
+        together
+    }
 }
 
 /// Most moves of the shift, and growth of its distance from the lowest eigenvalue where that is estimated too high.

@@ -5,4 +5,5 @@ pub mod gmres;
 pub mod lanczos;
 pub mod near_shift;
 pub mod orthonormal_block;
+pub mod refined_modes;
 pub mod spectrum_slices;

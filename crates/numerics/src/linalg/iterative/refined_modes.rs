@@ -16,9 +16,11 @@ use crate::linalg::dense::complex_products::LOOPS_UP_TO;
 use crate::linalg::dense::eigen::{self, Pairs};
 use crate::linalg::dot;
 use crate::linalg::exact_sums::quadratic::{self, ComplexSum, terms_of_moduli};
-use crate::linalg::libraries::{Accum, DMatrix, MatMut, MatRef, Par, matmul};
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::linalg::sparse_storage::triangle::Entry;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, MatMut, MatRef, Par};
+use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the modes of the structure";
@@ -49,7 +51,7 @@ const MANY_ENTRIES: usize = 4;
 ///
 /// # Errors
 /// As [`eigen::generalised`].
-pub(crate) fn modes(stiffness: &Csc, mass: &[Complex64], interrupt: &Interrupt<'_>) -> Result<Pairs> {
+pub fn modes(stiffness: &Csc, mass: &[Complex64], interrupt: &Interrupt<'_>) -> Result<Pairs> {
     interrupt.check()?;
     let n = stiffness.rows;
     let (stiffness, mass) = &without_zeros(stiffness, mass)?;
@@ -158,7 +160,10 @@ fn steps<T: Entry>(
 }
 
 /// The dense matrix with the given values at the entries of a pattern, zero elsewhere.
-pub(crate) fn dense(pattern: &Csc, values: &[Complex64]) -> Result<DMatrix<Complex64>> {
+///
+/// # Errors
+/// `OutOfMemory`.
+pub fn dense(pattern: &Csc, values: &[Complex64]) -> Result<DMatrix<Complex64>> {
     let n = pattern.rows;
     let mut a = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
     for j in 0..n {
