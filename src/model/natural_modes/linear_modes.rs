@@ -383,6 +383,7 @@ impl Pencil {
             mass: &self.mass,
             damping: gyroscopic,
             stiffness: &self.stiffness,
+            modal: &[],
         };
         let mut modes = LinearModes {
             omega: Vec::new(),
