@@ -134,9 +134,11 @@ impl Condensed {
         } else {
             (self.blocks.len(), self.coordinates())
         };
+        let modal = self.blocks.iter().filter_map(|block| block.matrices.modal.as_ref());
         Ok(SweepTables {
             harmonics,
             contacts,
+            damped_modes: modal.map(|directions| directions.len()).max().unwrap_or(0),
             resonances,
         })
     }

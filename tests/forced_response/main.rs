@@ -24,6 +24,7 @@ mod load_history;
 mod many_contacts;
 mod many_sliders_in_time;
 mod mean_friction;
+mod modal_beside_coupling;
 mod onset_between_values;
 mod onset_in_plane;
 mod preload;

@@ -133,6 +133,7 @@ pub(crate) fn of_wave(
         mass: &matrices.mass,
         damping: &matrices.damping,
         stiffness: &matrices.stiffness,
+        modal: &[],
     };
     // One more shows whether the last shares its frequency.
     let mut pairs = problem.lowest(count.saturating_add(1), interrupt)?;

@@ -5,9 +5,12 @@ use crate::condense::blocks::flexibility_way::FlexibilityWay;
 use crate::condense::by_modes::sum_terms::Source;
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::factors::factor::is_dense;
+use crate::linalg::iterative::block_krylov::SparseVector;
 use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::few_motions::reduced_wave::{MotionRow, ReducedView};
+use crate::model::matrices::modal_directions::split_damping;
 use crate::model::matrices::sector_motion::MOTION_TERMS;
 use crate::model::matrices::spring::Row;
 use crate::model::matrices::structure::MatrixKind;
@@ -57,8 +60,10 @@ pub struct BlockMatrices {
     pub stiffness: Values,
     /// D_h of the structural damping iD_h, ηK_h included, at the entries of the pattern; `None` without such damping.
     pub structural: Option<Values>,
-    /// Damping C_h at the entries of the pattern.
+    /// Damping C_h at the entries of the pattern, without that of `modal`.
     pub damping: Values,
+    /// Columns of L of the damping L Lᴴ of few modes beside it; `None` without, or where it is part of the matrix.
+    pub modal: Option<Arc<Vec<SparseVector>>>,
     /// Mass M_h at the entries of the pattern.
     pub mass: Values,
     /// Matrix of the artificial damping of a nonlinear mode.
@@ -238,6 +243,10 @@ pub(crate) fn shared_block(
         }
         Arc::new(reference)
     };
+    let modal = match (&known.matrices.modal, form) {
+        (Some(known), Form::Conjugated) => Some(Arc::new(conjugated(known)?)),
+        (known, _) => known.clone(),
+    };
     let tied = known.matrices.tied.as_ref().map(|tied| {
         Ok(TiedValues {
             stiffness: copy(&tied.stiffness)?,
@@ -246,6 +255,7 @@ pub(crate) fn shared_block(
     });
     let matrices = Matrices {
         damping: share(&known.matrices.damping)?,
+        modal,
         mass: share(&known.matrices.mass)?,
         tied: tied.transpose()?,
         stiffness,
@@ -255,11 +265,25 @@ pub(crate) fn shared_block(
     matrices.into_block(model, number, contact_classes, rows)
 }
 
+/// The conjugate ones of some vectors.
+fn conjugated(vectors: &[SparseVector]) -> Result<Vec<SparseVector>> {
+    let mut found = Vec::new();
+    for vector in vectors {
+        let mut copy = try_copy(vector, "the matrices per harmonic")?;
+        for (_, z) in &mut copy {
+            *z = z.conj();
+        }
+        try_push(&mut found, copy, "the matrices per harmonic")?;
+    }
+    Ok(found)
+}
+
 /// The matrices of a block; see [`HarmonicBlock`].
 struct Matrices {
     stiffness: Values,
     structural: Option<Values>,
     damping: Values,
+    modal: Option<Arc<Vec<SparseVector>>>,
     mass: Values,
     tied: Option<TiedValues>,
     reference: Arc<Csc>,
@@ -283,6 +307,7 @@ impl Matrices {
                 stiffness: self.stiffness,
                 structural: self.structural,
                 damping: self.damping,
+                modal: self.modal,
                 mass: self.mass,
                 artificial: Artificial::None,
                 tied: self.tied,
@@ -329,7 +354,16 @@ pub(crate) fn harmonic_block(
     let stiffness = model.sprung_stiffness(Wave::Harmonic(number), stuck)?;
     let rows = rows_of(model, representatives, number)?;
     interrupt.check()?;
-    let damping = structure.wave_matrix(MatrixKind::Damping, number)?;
+    // Beside a full stiffness the damping of modes is full without loss.
+    let split = if !structure.has_modal_damping() || is_dense(&stiffness)? {
+        None
+    } else {
+        split_damping(structure, number, interrupt)?
+    };
+    let (damping, modal) = match split {
+        Some((rest, modal)) => (rest, (!modal.is_empty()).then(|| Arc::new(modal))),
+        None => (structure.wave_matrix(MatrixKind::Damping, number)?, None),
+    };
     let structural = structure.wave_matrix(MatrixKind::Structural, number)?;
     interrupt.check()?;
     let mass = structure.wave_matrix(MatrixKind::Mass, number)?;
@@ -374,6 +408,7 @@ pub(crate) fn harmonic_block(
         stiffness: aligned(&stiffness)?,
         structural: structural.transpose()?,
         damping: aligned(&damping)?,
+        modal,
         mass: aligned(&mass)?,
         tied: tied.transpose()?,
         reference: Arc::new(reference),

@@ -77,6 +77,7 @@ impl HarmonicBlock {
                 stiffness: Arc::new(aligned(&self.matrices.stiffness)?),
                 structural: structural.transpose()?,
                 damping: Arc::new(damping),
+                modal: self.matrices.modal.clone(),
                 mass: Arc::new(mass),
                 artificial: Artificial::None,
                 tied: match &self.matrices.tied {

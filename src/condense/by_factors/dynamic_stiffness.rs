@@ -2,7 +2,7 @@
 //!
 //! Z_κ = K + Wᴴ κ W − h²ω²M + ihωC + iD, with a speed Ω = pω also + ω² p²K₁ + ihω² pG, and in a nonlinear mode of damping ratio D the artificial
 //! damping −2DωM ẋ (mass type) or −ζK ẋ with D = ζω/2 (stiffness type), which adds −2ihDω²M or
-//! −2ihDK.
+//! −2ihDK. Damping of few modes is a term of low rank beside the factors, see [`crate::linalg::factors::low_rank_term`].
 
 use crate::condense::tuned_wheel::tuned_factors::TunedFactors;
 use crate::condense::tuned_wheel::tuned_plan::TUNED_TERMS;
@@ -11,9 +11,12 @@ use crate::error::{Error, Result, Status, boxed, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::exact_sums::quadratic::{self, ComplexSum};
 use crate::linalg::factors::factor::Factor;
+use crate::linalg::factors::low_rank_term::{LowRankTerm, Sides, add_term_product};
 use crate::linalg::factors::slender_lu::SlenderLu;
+use crate::linalg::iterative::block_krylov::SparseVector;
 use crate::linalg::sparse_storage::sparse::Csc;
 use num_complex::Complex64;
+use std::sync::Arc;
 
 /// Angular frequency and artificial damping ratio at which a dynamic stiffness is made; the latter is 0 of a forced response.
 #[derive(Clone, Copy, Debug)]
@@ -58,6 +61,9 @@ struct Plain {
     /// Z_κ on each pattern of entries; and for each harmonic the index of its pattern.
     z: Vec<Csc>,
     patterns: Vec<usize>,
+    /// Damping of few modes beside the factors, if some harmonic has such, and that of the current factors with the index of their pattern.
+    modal: Option<Box<LowRankTerm>>,
+    current: (usize, Option<Arc<Vec<SparseVector>>>),
 }
 
 impl Plain {
@@ -76,11 +82,54 @@ impl Plain {
         let Some(first) = condensed.blocks().first() else {
             return fail!(Internal, "no harmonic is carried");
         };
+        let modal = condensed
+            .blocks()
+            .iter()
+            .filter_map(|block| block.matrices.modal.as_ref());
+        let most = modal.map(|directions| directions.len()).max();
+        let modal = most.map(|most| boxed(|| LowRankTerm::new(condensed.ndof(), most)));
         Ok(Self {
             factor: Factor::new(&first.matrices.reference, columns)?,
             z,
             patterns,
+            modal: modal.transpose()?,
+            current: (0, None),
         })
+    }
+
+    /// Factors a matrix that was filled in, of the block with that index, with the factor `c` of its damping.
+    fn factor(&mut self, block: &HarmonicBlock, i: usize, c: Complex64, interrupt: &Interrupt<'_>) -> Result<()> {
+        let at = self.patterns[i];
+        self.current = (at, None);
+        let factored = self.factor.factor(&self.z[at], interrupt);
+        let (Some(directions), Some(modal)) = (&block.matrices.modal, &mut self.modal) else {
+            return factored;
+        };
+        factored?;
+        if c == Complex64::ZERO {
+            return Ok(());
+        }
+        let mut sides = Sides {
+            factor: &mut self.factor,
+            matrix: &self.z[at],
+            directions: &directions[..],
+        };
+        modal.renew(c, &mut sides, interrupt)?;
+        self.current.1 = Some(Arc::clone(directions));
+        Ok(())
+    }
+
+    /// Solves Z X = B (or Zᵀ X = B) in place.
+    fn solve(&mut self, b: &mut [Complex64], transposed: bool, interrupt: &Interrupt<'_>) -> Result<()> {
+        let (Some(directions), Some(modal)) = (&self.current.1, &mut self.modal) else {
+            return self.factor.solve(b, transposed, interrupt);
+        };
+        let mut sides = Sides {
+            factor: &mut self.factor,
+            matrix: &self.z[self.current.0],
+            directions: &directions[..],
+        };
+        modal.solve(&mut sides, b, transposed, interrupt)
     }
 }
 
@@ -177,7 +226,7 @@ impl DynamicStiffness {
             *z = sum.at(block, at);
             self.largest = self.largest.max(z.re.abs()).max(z.im.abs());
         }
-        let factored = plain.factor.factor(z, interrupt);
+        let factored = plain.factor(block, i, sum.damping, interrupt);
         factored.map_err(|e| at_harmonic(e, block, omega.re))
     }
 
@@ -189,7 +238,7 @@ impl DynamicStiffness {
     /// The current factors, if they solve many right sides side by side.
     pub(crate) fn slender(&mut self) -> Option<&mut SlenderLu> {
         match &mut self.plain {
-            Some(plain) if self.tuned_at.is_none() => plain.factor.slender(),
+            Some(plain) if self.tuned_at.is_none() && plain.modal.is_none() => plain.factor.slender(),
             _ => None,
         }
     }
@@ -198,7 +247,7 @@ impl DynamicStiffness {
     fn solve_columns(&mut self, b: &mut [Complex64], transposed: bool, interrupt: &Interrupt<'_>) -> Result<()> {
         match (&mut self.tuned, &mut self.plain) {
             (Some(tuned), _) if self.tuned_at.is_some() => tuned.solve(b, interrupt),
-            (_, Some(plain)) => plain.factor.solve(b, transposed, interrupt),
+            (_, Some(plain)) => plain.solve(b, transposed, interrupt),
             _ => fail!(Internal, "a dynamic stiffness was not factored"),
         }
     }
@@ -326,6 +375,9 @@ impl DynamicStiffness {
                     self.remainder[pattern.row_idx[at]] -= sum.at(block, at) * x;
                 }
             }
+        }
+        if let Some(directions) = &block.matrices.modal {
+            add_term_product(directions, -sum.damping, false, x, &mut self.remainder);
         }
         let mut remainder = core::mem::take(&mut self.remainder);
         let solved = self.solve_columns(&mut remainder, false, interrupt);
@@ -481,9 +533,12 @@ pub(crate) fn add_slope_product(
             y[to] += sum.at(block, at) * x[from];
         }
     }
+    if let Some(directions) = &block.matrices.modal {
+        add_term_product(directions, sum.damping, transposed, x, y);
+    }
 }
 
-/// Fills the entries of ∂Z/∂ω of a harmonic, in the order of its pattern.
+/// Fills the entries of ∂Z/∂ω of a harmonic, in the order of its pattern, without the damping of few modes.
 pub(crate) fn fill_slope(
     block: &HarmonicBlock,
     DampedFrequency { omega, damping }: DampedFrequency,
@@ -495,8 +550,8 @@ pub(crate) fn fill_slope(
     }
 }
 
-/// y ← A x for the entries of a matrix in the order of the pattern of a harmonic.
-pub(crate) fn multiply(block: &HarmonicBlock, entries: &[Complex64], x: &[Complex64], y: &mut [Complex64]) {
+/// y ← ∂Z/∂ω x for its entries in the order of the pattern of a harmonic, and the damping of few modes.
+pub(crate) fn multiply_slope(block: &HarmonicBlock, entries: &[Complex64], x: &[Complex64], y: &mut [Complex64]) {
     let pattern = &block.matrices.reference;
     y.fill(Complex64::ZERO);
     for (x, ends) in x.iter().zip(pattern.col_ptr.windows(2)) {
@@ -504,6 +559,10 @@ pub(crate) fn multiply(block: &HarmonicBlock, entries: &[Complex64], x: &[Comple
         for (entry, &row) in entries[column.clone()].iter().zip(&pattern.row_idx[column]) {
             y[row] += entry * x;
         }
+    }
+    if let Some(directions) = &block.matrices.modal {
+        let c = Complex64::new(0.0, block.number as f64);
+        add_term_product(directions, c, false, x, y);
     }
 }
 

@@ -4,7 +4,7 @@
 //! vector of forces only, R ∂x/∂ω of the motion x under them, and the response its last row.
 
 use crate::condense::by_factors::dynamic_stiffness::{
-    DampedFrequency, Variable, add_slope_product, fill_slope, multiply,
+    DampedFrequency, Variable, add_slope_product, fill_slope, multiply_slope,
 };
 use crate::condense::by_factors::flexibility::{CONTEXT, Table, Workspace, made, read};
 use crate::condense::{Condensed, HarmonicBlock};
@@ -59,7 +59,7 @@ impl Workspace {
             interrupt.check_before(8 * (outputs * columns.len()) as u64)?;
             let products = &mut self.products[..columns.len()];
             for (column, product) in columns.chunks_exact(n).zip(products.chunks_exact_mut(n)) {
-                multiply(block, &self.slope[..entries], column, product);
+                multiply_slope(block, &self.slope[..entries], column, product);
             }
             multiply_adjoint(&self.rows, products, table, n);
         }

@@ -83,6 +83,7 @@ pub(crate) fn poles(
             Arc::clone(&block.matrices.mass),
             Arc::clone(&block.matrices.damping),
         ),
+        modal: block.matrices.modal.clone(),
         tied: block.matrices.tied.as_ref().map(|_| block.number),
     };
     Ok(wave.poles(key, interrupt)?.ok_or(UNSUITABLE))
@@ -100,16 +101,19 @@ pub(crate) fn are_of(poles: &WavePoles, block: &HarmonicBlock) -> bool {
         && has_stiffness
         && is_same(mass, &block.matrices.mass)
         && is_same(damping, &block.matrices.damping)
+        && poles.key.modal == block.matrices.modal
 }
 
 /// Work of computing the poles of a wave: order³, times a factor for complex matrices.
 fn work(condensed: &Condensed, block: &HarmonicBlock) -> f64 {
     let real = |values: &[Complex64]| values.iter().all(|z| z.im == 0.0);
+    let directions = block.matrices.modal.iter().flat_map(|all| all.iter());
     let is_real = block.matrices.structural.is_none()
         && block.matrices.tied.is_none()
         && real(&block.matrices.stiffness)
         && real(&block.matrices.damping)
-        && real(&block.matrices.mass);
+        && real(&block.matrices.mass)
+        && directions.flatten().all(|(_, z)| z.im == 0.0);
     let order = 2.0 * condensed.ndof() as f64;
     order.powi(3) * if is_real { 1.0 } else { WORK_OF_COMPLEX }
 }
@@ -189,7 +193,14 @@ impl Undamped {
                 *z *= scale;
             }
         }
-        let damping = dense(pattern, &block.matrices.damping)?;
+        let mut damping = dense(pattern, &block.matrices.damping)?;
+        for direction in block.matrices.modal.iter().flat_map(|all| all.iter()) {
+            for &(j, b) in direction {
+                for &(i, a) in direction {
+                    damping[(i, j)] += a * b.conj();
+                }
+            }
+        }
         let heavy = &shapes[massless * n..];
         for matrix in [&damping, &rest] {
             // A motion without mass that is damped would have a pole of first order.

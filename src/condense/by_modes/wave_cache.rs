@@ -384,6 +384,10 @@ fn modes_of(
         &with_springs
     };
     let matrices = [&block.matrices.mass[..], own, &block.matrices.damping];
+    let modal = block.matrices.modal.as_deref().map_or(&[][..], |modal| modal);
+    if !(few || modal.is_empty()) {
+        return Ok(None);
+    }
     let (proportional, dampers) = match proportional(matrices) {
         Some(found) => (found, Vec::new()),
         None if few => match few_directions(
@@ -412,7 +416,7 @@ fn modes_of(
         }
     };
     let mut rows = Vec::new();
-    for damper in &dampers {
+    for damper in dampers.iter().chain(modal) {
         try_push(&mut rows, MotionRow::adjoint(damper)?, CONTEXT)?;
     }
     Ok(Some(WaveModes {

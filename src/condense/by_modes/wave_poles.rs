@@ -2,6 +2,7 @@
 //! [`crate::condense::by_modes::quadratic_poles`], which computes them.
 
 use crate::condense::by_modes::wave_modes::NEAR_RESONANCE;
+use crate::linalg::iterative::block_krylov::SparseVector;
 use crate::linalg::sparse_storage::sparse::Csc;
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -21,6 +22,7 @@ pub struct WavePoles {
 
 #[derive(Debug)]
 pub(crate) struct Key {
+    pub(crate) modal: Option<Arc<Vec<SparseVector>>>,
     pub(crate) matrices: (Arc<Csc>, Arc<Vec<Complex64>>, Arc<Vec<Complex64>>),
     pub(crate) tied: Option<usize>,
 }

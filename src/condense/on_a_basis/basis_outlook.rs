@@ -83,6 +83,8 @@ pub(crate) struct SweepTables {
     pub harmonics: usize,
     /// Relative motions of contacts that each table has.
     pub contacts: usize,
+    /// Modes whose damping is a term beside the factors, which takes a solution for each.
+    pub damped_modes: usize,
     /// Resonances that the sweep is known to pass.
     pub resonances: usize,
 }
@@ -102,7 +104,8 @@ pub(crate) fn are_all_poles_quicker(pattern: &Csc, work: f64, tables: SweepTable
 fn are_sums_quicker(pattern: &Csc, once: f64, terms: f64, tables: SweepTables) -> Result<bool> {
     let columns = tables.contacts as f64;
     let of_factors = of_factors(entries_by_degrees(pattern)?, pattern.cols);
-    let by_factors = of_factors * (1.0 + columns / COLUMNS_OF_FACTORS);
+    let solved = columns + tables.damped_modes as f64;
+    let by_factors = of_factors * (1.0 + solved / COLUMNS_OF_FACTORS);
     let by_sums = WORK_OF_A_SUM * columns * columns * terms;
     let points = POINTS_ALONG_RANGE + (POINTS_OF_RESONANCE * tables.resonances) as f64;
     let count = ALONG_RANGE / POINTS_ALONG_RANGE * points * tables.harmonics as f64;

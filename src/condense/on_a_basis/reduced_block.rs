@@ -92,6 +92,7 @@ pub(crate) fn reduced_block(
             stiffness: Arc::new(stiffness),
             structural,
             damping: Arc::new(damping),
+            modal: None,
             mass: Arc::new(mass),
             artificial: Artificial::None,
             tied: None,

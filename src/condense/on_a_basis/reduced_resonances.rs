@@ -63,6 +63,7 @@ pub fn reduced_resonances(
                 mass: &mass,
                 damping: &damping()?,
                 stiffness: &stiffness,
+                modal: &[],
             };
             gyroscopic_frequencies(block.number, range, &problem, interrupt)
         } else {

@@ -2,14 +2,18 @@
 
 use crate::condense::by_modes::few_directions::{FewDirections, few_directions};
 use crate::condense::by_modes::wave_modes::proportional;
-use crate::error::Result;
+use crate::error::{Result, try_push};
 use crate::interrupt::Interrupt;
+use crate::linalg::iterative::block_krylov::SparseVector;
 use crate::linalg::sparse_storage::sparse::{Columns, Csc, Form, Symmetry, aligned, worst_pair};
 use crate::model::Model;
 use crate::model::few_motions::reduced_wave::WaveKey;
+use crate::model::matrices::modal_directions::split_damping;
 use crate::model::matrices::structure::MatrixKind;
 use crate::model::matrices::wave_matrix::WaveMatrix;
 use num_complex::Complex64;
+
+const CONTEXT: &str = "the damping of a wave";
 
 /// Relative deviation from a Hermitian matrix that is rounding.
 /// Kind: rounding.
@@ -62,6 +66,20 @@ impl WaveMatrices<'_> {
             .matrix_of_wave(kind, self.number, self.conjugated)
     }
 
+    /// Damping of the wave without that of few modes, and the directions of these.
+    fn split_damping(&self, interrupt: &Interrupt<'_>) -> Result<(WaveMatrix<'_>, Vec<SparseVector>)> {
+        let Some((mut rest, mut modal)) = split_damping(self.model.structure(), self.number, interrupt)? else {
+            return Ok((self.matrix(MatrixKind::Damping)?, Vec::new()));
+        };
+        if self.conjugated {
+            let entries = modal.iter_mut().flatten().map(|(_, z)| z);
+            for z in rest.values.iter_mut().chain(entries) {
+                *z = z.conj();
+            }
+        }
+        Ok((WaveMatrix::Made(rest), modal))
+    }
+
     /// Assembles K, M and damping of the wave; `None` where stiffness or mass is not Hermitian.
     pub fn assembled(&self, interrupt: &Interrupt<'_>) -> Result<Option<Assembled<'_>>> {
         let structure = self.model.structure();
@@ -79,7 +97,7 @@ impl WaveMatrices<'_> {
             }
         }
         let damping = if structure.has(MatrixKind::Damping) || structure.has_modal_damping() {
-            let c = self.matrix(MatrixKind::Damping)?;
+            let (c, modal) = self.split_damping(interrupt)?;
             let (none, n) = (Complex64::ZERO, c.columns());
             let terms = [&mass, &stiffness, &c].map(|a| (none, a, Form::Plain));
             let pattern = Csc::sum(n, &terms)?;
@@ -89,13 +107,25 @@ impl WaveMatrices<'_> {
                 aligned(&c, &pattern)?,
             ];
             let aligned = [&aligned[0][..], &aligned[1], &aligned[2]];
-            if let Some((alpha, beta)) = proportional(aligned) {
-                Damping::Proportional(alpha, beta)
-            } else {
-                match few_directions(&pattern, aligned, structure.rayleigh, interrupt)? {
-                    Some(few) => Damping::Few(few),
-                    None => Damping::General(c.into_csc()?),
+            let proportional = proportional(aligned);
+            let few = match proportional {
+                Some(proportional) => Some(FewDirections {
+                    proportional,
+                    directions: Vec::new(),
+                    middle: None,
+                }),
+                None => few_directions(&pattern, aligned, structure.rayleigh, interrupt)?,
+            };
+            match (proportional, few) {
+                (Some((alpha, beta)), _) if modal.is_empty() => Damping::Proportional(alpha, beta),
+                (_, Some(mut few)) if modal.is_empty() || few.middle.is_none() => {
+                    for direction in modal {
+                        try_push(&mut few.directions, direction, CONTEXT)?;
+                    }
+                    Damping::Few(few)
                 }
+                _ if modal.is_empty() => Damping::General(c.into_csc()?),
+                _ => Damping::General(self.matrix(MatrixKind::Damping)?.into_csc()?),
             }
         } else {
             let (alpha, beta) = structure.rayleigh;

@@ -195,6 +195,7 @@ fn pays(request: &Request<'_>, groups: &[Group], interrupt: &Interrupt<'_>) -> R
         let tables = SweepTables {
             harmonics: request.numbers.len(),
             contacts: request.contacts.1.len(),
+            damped_modes: 0,
             resonances: 0,
         };
         return Ok(!is_estimated || !are_all_modes_wanted(request.model, tables, interrupt)?);

@@ -101,7 +101,17 @@ impl Structure {
     /// # Errors
     /// `Argument` when the nodal diameter of the harmonic was not given; `OutOfMemory`.
     pub fn wave_matrix(&self, which: MatrixKind, harmonic: usize) -> Result<Csc> {
-        self.residue_matrix(which, self.residue(harmonic as i64), harmonic == 0)
+        self.residue_matrix(which, self.residue(harmonic as i64), harmonic == 0, true)
+    }
+
+    /// The same without modal damping.
+    pub(crate) fn wave_matrix_beside_modes(&self, which: MatrixKind, harmonic: usize) -> Result<Csc> {
+        self.residue_matrix(which, self.residue(harmonic as i64), harmonic == 0, false)
+    }
+
+    /// The modal damping matrix that harmonic `harmonic` has, or that of the other sense, to be conjugated.
+    pub(crate) fn modal_damping_of_harmonic(&self, harmonic: usize) -> Option<(&KeptMatrix, Form)> {
+        self.of_residue(&self.modal_damping, self.residue(harmonic as i64))
     }
 
     /// The matrix of the wave in which sector s + 1 lags by 2π·diameter/N.
@@ -109,10 +119,11 @@ impl Structure {
     /// # Errors
     /// As [`Self::wave_matrix`].
     pub fn diameter_matrix(&self, which: MatrixKind, diameter: i64) -> Result<Csc> {
-        self.residue_matrix(which, self.residue_of(diameter), false)
+        self.residue_matrix(which, self.residue_of(diameter), false, true)
     }
 
-    fn residue_matrix(&self, which: MatrixKind, residue: usize, real: bool) -> Result<Csc> {
+    /// The matrix of a residue: the real part of complex ones if `real`, with the damping of modes if `with_modes`.
+    fn residue_matrix(&self, which: MatrixKind, residue: usize, real: bool, with_modes: bool) -> Result<Csc> {
         let (of_mass, of_stiffness) = match which {
             MatrixKind::Damping => self.rayleigh,
             // No stress follows a mean strain by a phase.
@@ -127,7 +138,7 @@ impl Structure {
             _ => 0.0,
         };
         let modal = match which {
-            MatrixKind::Damping => self.modal_damping_of(residue, real)?,
+            MatrixKind::Damping if with_modes => self.modal_damping_of(residue, real)?,
             _ => None,
         };
         let aero = match which {

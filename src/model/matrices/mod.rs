@@ -8,6 +8,7 @@ pub mod degree_map;
 pub(crate) mod face_coordinates;
 pub mod influence;
 pub(crate) mod modal_damping;
+pub(crate) mod modal_directions;
 pub(crate) mod part_of_turn;
 pub mod rotation;
 pub mod sector_faces;

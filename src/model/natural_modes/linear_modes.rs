@@ -381,6 +381,7 @@ impl Pencil {
             mass: &self.mass,
             damping: gyroscopic,
             stiffness: &self.stiffness,
+            modal: &[],
         };
         let mut modes = LinearModes {
             omega: Vec::new(),

@@ -1,8 +1,9 @@
 //! The quadratic eigenproblem (λ²M + λC + K) x = 0 of a damped structure, and which of its eigenvalues are modes.
 
-use crate::error::{Result, fail, try_vec};
+use crate::error::{Result, fail, try_push, try_vec};
 use crate::linalg::exact_sums::quadratic::{ComplexSum, QUADRATIC_ROUNDING, product, quadratic, terms};
 use crate::linalg::inner;
+use crate::linalg::iterative::block_krylov::SparseVector;
 use crate::linalg::sparse_storage::held_rows::MovingRows;
 use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use num_complex::Complex64;
@@ -26,6 +27,8 @@ pub struct Quadratic<'a> {
     pub damping: &'a Csc,
     /// Stiffness matrix K, structural damping included.
     pub stiffness: &'a Csc,
+    /// Columns of L of damping L Lᴴ beside C, which a search within a range knows.
+    pub modal: &'a [SparseVector],
 }
 
 /// An eigenvalue with its shape, xᴴ M x = 1.
@@ -60,10 +63,15 @@ impl Quadratic<'_> {
         };
         let parts = [self.mass, self.damping, self.stiffness].map(|a| moving.reduced(a));
         let [mass, damping, stiffness] = parts;
+        let mut modal = Vec::new();
+        for direction in self.modal {
+            try_push(&mut modal, moving.reduced_vector(direction)?, CONTEXT)?;
+        }
         let found = ask(&Quadratic {
             mass: &mass?,
             damping: &damping?,
             stiffness: &stiffness?,
+            modal: &modal,
         })?;
         Ok(Some((found, moving)))
     }

@@ -236,10 +236,13 @@ fn estimate(problem: &Quadratic<'_>, hermitian: &Csc, count: usize, interrupt: &
 /// The operator at a shift, which is moved aside if it hits an eigenvalue.
 fn operator<'a>(problem: &Quadratic<'a>, shift: Complex64, interrupt: &'a Interrupt<'a>) -> Result<NearShift<'a>> {
     let matrices = [problem.mass, problem.damping, problem.stiffness];
-    match NearShift::new(matrices, shift, interrupt) {
-        Err(e) if e.status == Status::Singular => {
-            NearShift::new(matrices, shift * (1.0 + QUADRATIC_SEARCH_ASIDE), interrupt)
-        }
+    match NearShift::with_directions(matrices, problem.modal, shift, interrupt) {
+        Err(e) if e.status == Status::Singular => NearShift::with_directions(
+            matrices,
+            problem.modal,
+            shift * (1.0 + QUADRATIC_SEARCH_ASIDE),
+            interrupt,
+        ),
         found => found,
     }
 }

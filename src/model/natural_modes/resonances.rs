@@ -11,6 +11,7 @@ use crate::linalg::libraries::{DMatrix, Schur};
 use crate::linalg::sparse_storage::held_rows::MovingRows;
 use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::Model;
+use crate::model::matrices::modal_directions::split_damping;
 use crate::model::matrices::structure::MatrixKind;
 use crate::model::matrices::wave::Wave;
 use crate::model::natural_modes::all_undamped::all_undamped;
@@ -150,10 +151,15 @@ fn small_motion_frequencies(
     ];
     let stiffness = Csc::sum(mass.rows, &terms)?;
     if model.structure().has_gyroscopic_modes(h)? {
+        let (damping, modal) = match split_damping(structure, h, interrupt)? {
+            Some(found) => found,
+            None => (structure.wave_matrix(MatrixKind::Damping, h)?, Vec::new()),
+        };
         let problem = Quadratic {
             mass: &mass,
-            damping: &structure.wave_matrix(MatrixKind::Damping, h)?,
+            damping: &damping,
             stiffness: &stiffness,
+            modal: &modal,
         };
         return gyroscopic_frequencies(h, range, &problem, interrupt);
     }
@@ -414,6 +420,7 @@ mod tests {
             mass: &structure.wave_matrix(MatrixKind::Mass, 1).unwrap(),
             damping: &structure.wave_matrix(MatrixKind::Damping, 1).unwrap(),
             stiffness: &structure.wave_matrix(MatrixKind::Stiffness, 1).unwrap(),
+            modal: &[],
         };
         let all = problem.lowest(40, &none).unwrap();
         for (low, high) in [(0.7, 0.72), (0.2, 0.9), (0.0, 3.0), (1.3, 2.6), (1.0, 1.0)] {

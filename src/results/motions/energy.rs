@@ -57,6 +57,10 @@ pub fn balance(condensed: &Condensed, omega: f64, x: &[Complex64], forces: &[f64
         sum.twice_mean_kinetic += 0.5 * hw * hw * form(pattern, &block.matrices.mass, x).re;
         sum.potential_mean += 0.25 * (stiffness.re + of_speed);
         sum.structural_loss += PI * h * (stiffness.im + hw * form(pattern, &block.matrices.damping, x).re);
+        for direction in block.matrices.modal.iter().flat_map(|all| all.iter()) {
+            let along = direction.iter().map(|(p, z)| z.conj() * x[*p]).sum::<Complex64>();
+            sum.structural_loss += PI * h * hw * along.norm_sqr();
+        }
         if let Some(structural) = &block.matrices.structural {
             sum.structural_loss += PI * h * form(pattern, structural, x).re;
         }

@@ -148,6 +148,17 @@ impl Factor {
         }
         Ok(())
     }
+
+    /// Solves A X = B in place for the columns of `b`, side by side where the factors have few entries in a column.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    pub fn solve_side_by_side(&mut self, b: &mut [Complex64], interrupt: &Interrupt<'_>) -> Result<()> {
+        match &mut self.kind {
+            Kind::Slender(slender) => slender.solve_side_by_side(b, interrupt),
+            Kind::Dense(_) | Kind::Sparse(_) => self.solve(b, false, interrupt),
+        }
+    }
 }
 
 impl Factor {

@@ -204,6 +204,45 @@ impl SlenderLu {
         Ok(())
     }
 
+    /// Solves A X = B in place for the columns of `b`, side by side.
+    ///
+    /// # Errors
+    /// `Singular` where a solution is not finite; `OutOfMemory`; `StoppedByCaller`.
+    pub fn solve_side_by_side(&mut self, b: &mut [Complex64], interrupt: &Interrupt<'_>) -> Result<()> {
+        if self.lanes.is_empty() {
+            self.lanes = try_vec(self.n, [[0.0; SIDES]; 2], CONTEXT)?;
+        }
+        let mut lanes = core::mem::take(&mut self.lanes);
+        let solved = self.solve_in_lanes(&mut lanes, b, interrupt);
+        self.lanes = lanes;
+        solved
+    }
+
+    fn solve_in_lanes(&self, lanes: &mut [Lanes], b: &mut [Complex64], interrupt: &Interrupt<'_>) -> Result<()> {
+        let columns = self.order_of_columns()?;
+        let (lower, upper) = (self.factors.l_factor_unsorted(), self.factors.u_factor_unsorted());
+        let entries = lower.col_ptr()[self.n] + upper.col_ptr()[self.n];
+        for b in b.chunks_mut(SIDES * self.n.max(1)) {
+            interrupt.check_before(OPERATIONS_OF_AN_ENTRY * (entries * SIDES) as u64)?;
+            lanes.fill([[0.0; SIDES]; 2]);
+            for (lane, b) in b.chunks_exact(self.n).enumerate() {
+                for ([re, im], &at) in lanes.iter_mut().zip(&self.rows) {
+                    (re[lane], im[lane]) = (b[at].re, b[at].im);
+                }
+            }
+            self.arch.dispatch(SideBySide { lower, upper, lanes });
+            for (lane, b) in b.chunks_exact_mut(self.n).enumerate() {
+                for ([re, im], &at) in lanes.iter().zip(columns) {
+                    b[at] = Complex64::new(re[lane], im[lane]);
+                }
+            }
+            if b.iter().any(|x| !x.is_finite()) {
+                return fail!(Singular, "a linear system has no finite solution");
+            }
+        }
+        Ok(())
+    }
+
     /// The flexibility R A⁻¹ Rᴴ between `count` ports R, column after column into `table`, whose columns begin `stride` apart, and
     /// into `moved.1` the products qᵀ A⁻¹ Rᴴ with a vector q = `moved.0`, unless that is empty. Returns the largest real or imaginary
     /// part of A⁻¹ Rᴴ.

@@ -12,6 +12,8 @@ use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::dense::general_eigen;
 use crate::linalg::factors::factor::Factor;
+use crate::linalg::factors::low_rank_term::{LowRankTerm, Sides, add_term_product};
+use crate::linalg::iterative::block_krylov::SparseVector;
 use crate::linalg::iterative::lanczos;
 use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::linalg::{ENOUGH_LEFT, inner, inner_in_parts, remove};
@@ -73,6 +75,9 @@ pub struct Near {
 pub struct NearShift<'a> {
     mass: &'a Csc,
     damping: &'a Csc,
+    /// Columns of L of further damping L Lᴴ; with the term beside the factors, and the matrix of these.
+    directions: &'a [SparseVector],
+    term: Option<(LowRankTerm, Csc)>,
     shift: Complex64,
     unit: f64,
     factor: Factor,
@@ -109,8 +114,17 @@ impl<'a> NearShift<'a> {
     ///
     /// # Errors
     /// `Singular` at an eigenvalue, `OutOfMemory`; `StoppedByCaller`.
-    pub fn new(
+    pub fn new(matrices: [&'a Csc; 3], shift: Complex64, interrupt: &'a Interrupt<'a>) -> Result<Self> {
+        Self::with_directions(matrices, &[], shift, interrupt)
+    }
+
+    /// The same for M, C + L Lᴴ and K with the columns of L.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_directions(
         [mass, damping, stiffness]: [&'a Csc; 3],
+        directions: &'a [SparseVector],
         shift: Complex64,
         interrupt: &'a Interrupt<'a>,
     ) -> Result<Self> {
@@ -122,9 +136,23 @@ impl<'a> NearShift<'a> {
         let matrix = Csc::sum(mass.rows, &terms)?;
         let mut factor = Factor::new(&matrix, 1)?;
         factor.factor(&matrix, interrupt)?;
+        let term = if directions.is_empty() {
+            None
+        } else {
+            let mut term = LowRankTerm::new(mass.rows, directions.len())?;
+            let mut sides = Sides {
+                factor: &mut factor,
+                matrix: &matrix,
+                directions,
+            };
+            term.renew(shift, &mut sides, interrupt)?;
+            Some((term, matrix))
+        };
         Ok(Self {
             mass,
             damping,
+            directions,
+            term,
             shift,
             unit: shift.norm(),
             factor,
@@ -351,7 +379,17 @@ impl<'a> NearShift<'a> {
         self.mass.multiply_add((-self.unit).into(), v, p);
         self.mass.multiply_add(-self.shift, x, p);
         self.damping.multiply_add(-Complex64::ONE, x, p);
-        self.factor.solve(p, false, self.interrupt)?;
+        if let Some((term, matrix)) = &mut self.term {
+            add_term_product(self.directions, -Complex64::ONE, false, x, p);
+            let mut sides = Sides {
+                factor: &mut self.factor,
+                matrix,
+                directions: self.directions,
+            };
+            term.solve(&mut sides, p, false, self.interrupt)?;
+        } else {
+            self.factor.solve(p, false, self.interrupt)?;
+        }
         for ((q, p), x) in q.iter_mut().zip(p.iter()).zip(x) {
             *q = (x + self.shift * p) / self.unit;
         }

@@ -73,6 +73,20 @@ impl MovingRows {
         Csc::from_triplets(self.rows.len(), self.rows.len(), entries)
     }
 
+    /// A vector restricted to the rows that move.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn reduced_vector(&self, vector: &[(usize, Complex64)]) -> Result<Vec<(usize, Complex64)>> {
+        let mut found = Vec::new();
+        for (i, v) in vector {
+            if let Ok(i) = self.rows.binary_search(i) {
+                try_push(&mut found, (i, *v), CONTEXT)?;
+            }
+        }
+        Ok(found)
+    }
+
     /// Shapes over all rows, one after the other, with zeros where rows are held.
     ///
     /// # Errors

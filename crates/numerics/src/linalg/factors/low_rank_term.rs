@@ -1,0 +1,255 @@
+//! A Hermitian term of low rank beside sparse factors, Z = Z₀ + c L Lᴴ, as the damping of few modes (Woodbury's identity; Hager 1989,
+//! doi:10.1137/1031049). With W = Z⁻¹L = Z₀⁻¹L (1 + c Lᴴ Z₀⁻¹L)⁻¹
+//!
+//! > Z⁻¹ = (1 − c W Lᴴ) Z₀⁻¹.
+//!
+//! Next to a resonance of Z₀, which lacks that damping, solutions by Z₀ are far larger than those by Z and lose as many digits, which
+//! steps with the residual of Z bring back.
+
+use crate::error::{Result, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::dense::complex_products;
+use crate::linalg::factors::factor::Factor;
+use crate::linalg::factors::lu::Lu;
+use crate::linalg::iterative::block_krylov::SparseVector;
+use crate::linalg::sparse_storage::sparse::Csc;
+use num_complex::Complex64;
+
+const CONTEXT: &str = "a term of low rank";
+
+/// Ratio of solutions by Z₀ and by Z beyond which residuals are worth their time.
+/// Kind: rounding.
+const LOSES_DIGITS: f64 = 10.0;
+
+/// Relative change by a step beyond which another one follows: each leaves the change of the last as a share.
+/// Kind: rounding.
+const LEFT_BY_A_STEP: f64 = 1e-8;
+
+/// Largest number of steps.
+/// Kind: cap.
+const STEPS_WITH_TERM: usize = 6;
+
+/// Memory for the term of one harmonic at a time.
+pub struct LowRankTerm {
+    n: usize,
+    factor: Complex64,
+    /// W, column after column.
+    solved: Vec<Complex64>,
+    /// Z₀⁻¹L, and 1 + c Lᴴ Z₀⁻¹L with its inverse.
+    undamped: Vec<Complex64>,
+    small: Lu<Complex64>,
+    inverse: Vec<Complex64>,
+    seen: Vec<Complex64>,
+    loses_digits: bool,
+    load: Vec<Complex64>,
+    change: Vec<Complex64>,
+}
+
+/// The parts of Z.
+pub struct Sides<'a> {
+    /// Factors of Z₀.
+    pub factor: &'a mut Factor,
+    /// Z₀ itself.
+    pub matrix: &'a Csc,
+    /// Columns of L.
+    pub directions: &'a [SparseVector],
+}
+
+impl LowRankTerm {
+    /// Memory for matrices of order `n` with up to `most` directions.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(n: usize, most: usize) -> Result<Self> {
+        let zeros = |count: usize| try_vec(count, Complex64::ZERO, CONTEXT);
+        Ok(Self {
+            n,
+            factor: Complex64::ZERO,
+            solved: zeros(n.saturating_mul(most))?,
+            undamped: zeros(n.saturating_mul(most))?,
+            small: Lu::new(most, most)?,
+            inverse: zeros(most * most)?,
+            seen: zeros(most)?,
+            loses_digits: false,
+            load: zeros(n)?,
+            change: zeros(n)?,
+        })
+    }
+
+    /// Prepares solutions with the term c L Lᴴ beside new factors.
+    ///
+    /// # Errors
+    /// `Singular`; `StoppedByCaller`.
+    pub fn renew(&mut self, c: Complex64, sides: &mut Sides<'_>, interrupt: &Interrupt<'_>) -> Result<()> {
+        let (n, count) = (self.n, sides.directions.len());
+        (self.factor, self.loses_digits) = (c, false);
+        let (columns, small) = (&mut self.undamped[..n * count], count * count);
+        columns.fill(Complex64::ZERO);
+        for (column, direction) in columns.chunks_exact_mut(n).zip(sides.directions) {
+            for &(p, z) in direction {
+                column[p] = z;
+            }
+        }
+        sides.factor.solve_side_by_side(columns, interrupt)?;
+        self.small.set_order(count);
+        for (j, (column, to)) in columns
+            .chunks_exact(n)
+            .zip(self.small.matrix().chunks_exact_mut(count.max(1)))
+            .enumerate()
+        {
+            for (i, (to, direction)) in to.iter_mut().zip(sides.directions).enumerate() {
+                *to = f64::from(u8::from(i == j)) + c * along(direction, column);
+            }
+        }
+        self.small.factor(interrupt)?;
+        let inverse = &mut self.inverse[..small];
+        inverse.fill(Complex64::ZERO);
+        for k in 0..count {
+            inverse[k * count + k] = Complex64::ONE;
+        }
+        self.small.solve_columns(inverse, false, interrupt)?;
+        let solved = &mut self.solved[..n * count];
+        interrupt.check_before((8 * n * small) as u64)?;
+        complex_products::multiply(columns, inverse, solved, n);
+        self.loses_digits = largest(columns) > LOSES_DIGITS * largest(solved);
+        Ok(())
+    }
+
+    /// Solves Z X = B (or Zᵀ X = B) in place.
+    ///
+    /// # Errors
+    /// `Singular`; `StoppedByCaller`.
+    pub fn solve(
+        &mut self,
+        sides: &mut Sides<'_>,
+        b: &mut [Complex64],
+        transposed: bool,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        if !self.loses_digits {
+            return self.solve_once(sides, b, transposed, interrupt);
+        }
+        for b in b.chunks_exact_mut(self.n) {
+            self.solve_with_residuals(sides, b, transposed, interrupt)?;
+        }
+        Ok(())
+    }
+
+    /// Solves with the factors and the term, without steps.
+    fn solve_once(
+        &mut self,
+        sides: &mut Sides<'_>,
+        b: &mut [Complex64],
+        transposed: bool,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        if !transposed {
+            sides.factor.solve(b, false, interrupt)?;
+        }
+        let (n, seen) = (self.n, &mut self.seen[..sides.directions.len()]);
+        for b in b.chunks_exact_mut(n) {
+            let columns = || self.solved.chunks_exact(n).zip(sides.directions);
+            if transposed {
+                // Z⁻ᵀ = Z₀⁻ᵀ (1 − c conj(L) Wᵀ)
+                for (seen, (column, _)) in seen.iter_mut().zip(columns()) {
+                    *seen = self.factor * column.iter().zip(&*b).map(|(w, b)| w * b).sum::<Complex64>();
+                }
+                for (seen, direction) in seen.iter().zip(sides.directions) {
+                    for &(p, z) in direction {
+                        b[p] -= z.conj() * seen;
+                    }
+                }
+            } else {
+                for (seen, direction) in seen.iter_mut().zip(sides.directions) {
+                    *seen = self.factor * along(direction, b);
+                }
+                for (seen, (column, _)) in seen.iter().zip(columns()) {
+                    for (b, w) in b.iter_mut().zip(column) {
+                        *b -= w * seen;
+                    }
+                }
+            }
+        }
+        if transposed {
+            sides.factor.solve(b, true, interrupt)?;
+        }
+        Ok(())
+    }
+
+    /// Solves for one column with steps x += Z⁻¹(b − Z x).
+    fn solve_with_residuals(
+        &mut self,
+        sides: &mut Sides<'_>,
+        b: &mut [Complex64],
+        transposed: bool,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let (mut load, mut change) = (core::mem::take(&mut self.load), core::mem::take(&mut self.change));
+        load.copy_from_slice(b);
+        let mut solved = self.solve_once(sides, b, transposed, interrupt);
+        for _ in 0..STEPS_WITH_TERM {
+            if solved.is_err() {
+                break;
+            }
+            change.copy_from_slice(&load);
+            subtract_product(sides.matrix, transposed, b, &mut change);
+            add_term_product(sides.directions, -self.factor, transposed, b, &mut change);
+            solved = self.solve_once(sides, &mut change, transposed, interrupt);
+            for (x, d) in b.iter_mut().zip(&change) {
+                *x += d;
+            }
+            if largest(&change) <= LEFT_BY_A_STEP * largest(b) {
+                break;
+            }
+        }
+        (self.load, self.change) = (load, change);
+        solved
+    }
+}
+
+/// Lᴴ x for one column of L.
+fn along(direction: &SparseVector, x: &[Complex64]) -> Complex64 {
+    direction.iter().map(|&(p, z)| z.conj() * x[p]).sum()
+}
+
+/// y ← y − A x, or with Aᵀ.
+fn subtract_product(a: &Csc, transposed: bool, x: &[Complex64], y: &mut [Complex64]) {
+    for j in 0..a.cols {
+        for (i, v) in a.column(j) {
+            let (to, from) = if transposed { (j, i) } else { (i, j) };
+            y[to] -= v * x[from];
+        }
+    }
+}
+
+/// y ← y + c L Lᴴ x, or with the transposed matrix.
+pub fn add_term_product(
+    directions: &[SparseVector],
+    c: Complex64,
+    transposed: bool,
+    x: &[Complex64],
+    y: &mut [Complex64],
+) {
+    for direction in directions {
+        if transposed {
+            let seen = c * direction.iter().map(|&(p, z)| z * x[p]).sum::<Complex64>();
+            for &(p, z) in direction {
+                y[p] += z.conj() * seen;
+            }
+        } else {
+            let seen = c * along(direction, x);
+            for &(p, z) in direction {
+                y[p] += z * seen;
+            }
+        }
+    }
+}
+
+/// Largest modulus of the numbers of some columns.
+fn largest(x: &[Complex64]) -> f64 {
+    x.iter().map(Complex64::norm_sqr).fold(0.0, f64::max).sqrt()
+}
+
+#[cfg(test)]
+#[path = "low_rank_term_tests.rs"]
+mod tests;
