@@ -75,51 +75,56 @@ fn forces_and_flexibility_are_the_matrix_of_sliders_and_of_friction_with_its_nor
 fn sliders_in_gross_slip_are_solved_by_few_products_with_terms_of_low_rank() {
     let none = Interrupt::none();
     let model = chain(1, (0.01, 1e-3));
-    let options = SolverOptions {
-        harmonics: 160,
-        ..SolverOptions::default()
-    };
-    let condensed = Condensed::new(&model, &options, (0.6, 0.9), &none).unwrap();
-    let mut problem = HarmonicBalance::new(&condensed, 8, (0.6, 0.9).into(), 0, None, &none).unwrap();
-    let (n, m) = (problem.unknowns(), condensed.set().packed_len());
-    // Motions of a hundred times the range of a slider, with small higher harmonics, and of about that range.
-    for (size, most) in [(20.0, 8), (0.2, usize::MAX)] {
-        let u: Vec<f64> = (0..n)
-            .map(|k| size * (1.7 * k as f64).sin() / (1 + k % m).pow(3) as f64)
-            .collect();
-        let mut at = Residual::new(n).unwrap();
-        problem.evaluate(&u, 0.7, &mut at).unwrap();
-        let column: Vec<f64> = (0..n).map(|k| (k as f64 * 0.9).cos()).collect();
-        let row: Vec<f64> = (0..=n).map(|k| (k as f64 * 0.7 + 0.2).sin()).collect();
-        let border = Border {
-            column: &column,
-            scales: (0.7, 3.0),
-            row: &row,
-        };
-        let b: Vec<f64> = (0..=n).map(|k| (k as f64 * 2.1).sin() + 1.0).collect();
-        let mut dense = DenseSystem::new(n).unwrap();
-        let lengths = Lengths {
-            group: m,
-            part: 3,
-            middle: m,
-            behind: 0,
-        };
-        let mut krylov = KrylovSystem::new(n, lengths, 400).unwrap();
-        let mut found = Vec::new();
-        for system in [&mut dense as &mut dyn LinearSystem, &mut krylov] {
+    // Motions of hundreds of times the range of a slider, and of about that range; too few unknowns for the terms, and enough.
+    for size in [20.0, 0.2] {
+        let products = [300, 330].map(|harmonics| {
+            let options = SolverOptions {
+                harmonics,
+                ..SolverOptions::default()
+            };
+            let condensed = Condensed::new(&model, &options, (0.6, 0.9), &none).unwrap();
+            let mut problem = HarmonicBalance::new(&condensed, 8, (0.6, 0.9).into(), 0, None, &none).unwrap();
+            let (n, m) = (problem.unknowns(), condensed.set().packed_len());
+            let u: Vec<f64> = (0..n)
+                .map(|k| size * (1.7 * k as f64).sin() / (1 + k % m).pow(3) as f64)
+                .collect();
+            let mut at = Residual::new(n).unwrap();
+            problem.evaluate(&u, 0.7, &mut at).unwrap();
+            let column: Vec<f64> = (0..n).map(|k| (k as f64 * 0.9).cos()).collect();
+            let row: Vec<f64> = (0..=n).map(|k| (k as f64 * 0.7 + 0.2).sin()).collect();
+            let border = Border {
+                column: &column,
+                scales: (0.7, 3.0),
+                row: &row,
+            };
+            let b: Vec<f64> = (0..=n).map(|k| (k as f64 * 2.1).sin() + 1.0).collect();
+            let lengths = Lengths {
+                group: m,
+                part: 3,
+                middle: m,
+                behind: 0,
+            };
+            let mut dense = DenseSystem::new(n).unwrap();
+            let mut krylov = KrylovSystem::new(n, lengths, 400).unwrap();
+            let mut found = Vec::new();
+            for system in [&mut dense as &mut dyn LinearSystem, &mut krylov] {
+                let mut x = b.clone();
+                system.update(&mut problem, border, &none).unwrap();
+                system.factor(&mut problem, &none).unwrap();
+                assert!(system.solve(&mut problem, 1e-10, &mut x, &none).unwrap());
+                found.push(x);
+            }
+            let largest = found[0].iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            let gap = found[0]
+                .iter()
+                .zip(&found[1])
+                .fold(0.0_f64, |m, (x, y)| m.max((x - y).abs()));
+            assert!(gap < 1e-6 * largest, "{size}: {gap:e} of {largest:e}");
+            assert_eq!(krylov.is_positive(), dense.is_positive(), "{size}");
             let mut x = b.clone();
-            system.update(&mut problem, border, &none).unwrap();
-            system.factor(&mut problem, &none).unwrap();
-            assert!(system.solve(&mut problem, 1e-10, &mut x, &none).unwrap());
-            found.push(x);
-        }
-        let largest = found[0].iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let gap = found[0]
-            .iter()
-            .zip(&found[1])
-            .fold(0.0_f64, |m, (x, y)| m.max((x - y).abs()));
-        assert!(gap < 1e-6 * largest, "{size}: {gap:e} of {largest:e}");
-        assert!(krylov.products() <= most, "{size}: {} products", krylov.products());
-        assert_eq!(krylov.is_positive(), dense.is_positive(), "{size}");
+            assert!(krylov.solve(&mut problem, 1e-4, &mut x, &none).unwrap());
+            krylov.products()
+        });
+        assert!(3 * products[1] <= products[0], "{size}: {products:?} products");
     }
 }
