@@ -24,6 +24,11 @@ const MOST_UNKNOWNS: usize = 3000;
 /// Kind: tuned; measured on: not recorded.
 const HARMONIC_LEVELS_SMALL: usize = 32;
 
+/// Motions of contacts from which on a harmonic makes Newton's matrix so much larger that fewer of them pay, although the structure has
+/// modes and its factors cost nothing.
+/// Kind: tuned; measured on: a finite-element sector with 60 contacts, a cantilever with 10.
+const COSTLY_FROM: usize = 32;
+
 /// Samples per harmonic where laws are sampled and the tolerance decides.
 /// Kind: tuned; measured on: not recorded.
 const SAMPLES_PER_HARMONIC: usize = 8;
@@ -79,10 +84,13 @@ impl<'m> HarmonicLevels<'m> {
         self.automatic
     }
 
-    /// Whether a harmonic costs much: many factorisations, or with exchanged motions, which need a hundred and more, full matrices.
+    /// Whether a harmonic costs much: many factorisations, many unknowns, or with exchanged motions, which need a hundred and more, full
+    /// matrices.
     pub fn are_costly(&self) -> bool {
         let known = self.models.any();
-        self.costly || known.is_some_and(|known| known.condensed.has_exchanges())
+        self.costly
+            || known
+                .is_some_and(|known| known.condensed.has_exchanges() || known.condensed.coordinates() >= COSTLY_FROM)
     }
 
     /// Number of levels available.

@@ -1,9 +1,12 @@
-//! Newton's matrix of a forced response by its contacts, J = D + G F: the identity D, but for the floors of means, the flexibility G
-//! and F = ∂f/∂y − κ, which has a low rank where contacts slip for a part of the period.
+//! Newton's matrix of a forced response by its contacts, J = D + G F with the flexibility G. Of a wheel D is the identity, but for the
+//! floors of means, and F = ∂f/∂y − κ has a low rank where contacts slip for a part of the period; for other structures see
+//! [`ContactBase`].
 
-use crate::error::{Result, try_extend, try_push};
+use crate::error::{Result, boxed, try_extend, try_push};
+use crate::interrupt::Interrupt;
 use crate::linalg::dense::complex_columns;
 use crate::linalg::newton::linear_system::Forces;
+use crate::problem::contact_base::ContactBase;
 use crate::problem::harmonic_balance::HarmonicBalance;
 use crate::problem::parametric_problem::put;
 
@@ -18,6 +21,17 @@ impl Forces for HarmonicBalance<'_> {
         self.forces.interrupt().check()?;
         let ring = self.products.ring.as_mut();
         Ok(ring.map_or(0.0, |ring| ring.unlikeness(self.condensed, &self.forces)))
+    }
+
+    fn begin(&mut self, interrupt: &Interrupt<'_>) -> Result<bool> {
+        if self.products.ring.is_some() {
+            return Ok(true);
+        }
+        let base = match &mut self.products.base {
+            Some(base) => base,
+            none => none.insert(boxed(|| ContactBase::new(self.condensed))?),
+        };
+        base.factor(self.condensed, &self.forces, self.tables.current(), interrupt)
     }
 
     fn rows(&mut self, force: usize, rows: &mut Vec<f64>, motions: &mut Vec<usize>) -> Result<f64> {
@@ -41,6 +55,10 @@ impl Forces for HarmonicBalance<'_> {
             for (i, &number) in set.numbers().iter().enumerate() {
                 let (at, kappa) = (set.offset(i), self.condensed.kappa(force, i));
                 stiffness = stiffness.max(kappa.norm());
+                let kappa = match &self.products.base {
+                    Some(base) => base.of(self.condensed, (force, i)),
+                    None => kappa,
+                };
                 own[at * m + at] -= kappa.re;
                 if number > 0 {
                     own[at * m + at + 1] -= kappa.im;
@@ -55,6 +73,10 @@ impl Forces for HarmonicBalance<'_> {
     fn response_of(&mut self, force: usize, w: &[f64], u: &mut [f64]) -> Result<()> {
         self.forces.interrupt().check()?;
         let set = self.condensed.set();
+        if let Some(base) = &self.products.base {
+            base.response_of(set, force, w, u);
+            return Ok(());
+        }
         let (m, coordinates) = (set.packed_len(), self.condensed.coordinates());
         u.fill(0.0);
         for (i, table) in self.tables.current().iter().enumerate() {
@@ -64,11 +86,16 @@ impl Forces for HarmonicBalance<'_> {
                 put(u, at, mean, g * z);
             }
         }
+        self.divide(u);
         Ok(())
     }
 
     fn subtract_response(&mut self, w: &[f64], u: &mut [f64]) -> Result<()> {
         let set = self.condensed.set();
+        if let Some(base) = &mut self.products.base {
+            base.subtract_response(set, w, u);
+            return Ok(());
+        }
         let (m, coordinates) = (set.packed_len(), self.condensed.coordinates());
         let (sum, [z, memory]) = (&mut self.memory.sum[..], &mut self.products.harmonic);
         for (i, table) in self.tables.current().iter().enumerate() {
@@ -89,8 +116,11 @@ impl Forces for HarmonicBalance<'_> {
         Ok(())
     }
 
-    fn divide(&self, u: &mut [f64]) {
+    fn divide(&mut self, u: &mut [f64]) {
         let set = self.condensed.set();
+        if let Some(base) = &mut self.products.base {
+            return base.divide(set, u);
+        }
         if set.has_mean() {
             for (c, mean) in u.iter_mut().step_by(set.packed_len()).enumerate() {
                 *mean /= 1.0 + self.forces.mean_floor(c);

@@ -16,6 +16,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::newton::linear_system::{Jacobian, MatrixFree};
 use crate::options::Range;
 use crate::options::Response;
+use crate::problem::contact_base::ContactBase;
 use crate::problem::contact_forces::ContactForces;
 use crate::problem::contact_forces::single_matrix;
 use crate::problem::gauges::{Gauges, Seen};
@@ -83,6 +84,8 @@ pub(super) struct ProductMemory {
     pub silent: Vec<bool>,
     /// Means over the sectors, where the structure is a whole wheel.
     pub ring: Option<Box<RingBlocks>>,
+    /// What contacts do for most of the period, of other structures.
+    pub base: Option<Box<ContactBase>>,
 }
 
 impl<'a> HarmonicBalance<'a> {

@@ -4,6 +4,7 @@
 //! concept) over amplitude, and [`homotopy`] wraps either where Newton's method does not find a first point. The
 //! continuation uses the trait [`Problem`] and nothing else of mechanics.
 
+mod contact_base;
 pub mod contact_forces;
 mod contact_jacobian;
 mod contact_rank;

@@ -105,7 +105,7 @@ impl MatrixFree for HarmonicBalance<'_> {
     }
 
     fn forces(&mut self) -> Option<&mut dyn Forces> {
-        self.products.ring.is_some().then_some(self)
+        (self.products.ring.is_some() || !self.condensed.has_exchanges()).then_some(self)
     }
 
     fn keep(&mut self) -> Result<()> {

@@ -128,7 +128,6 @@ impl Crosses {
             let of_group = &self.left[group.left..group.left + group.rank * m];
             for (of_cross, (k, column)) in of_group.chunks_exact(m.max(1)).zip(&mut columns) {
                 forces.response_of(group.force, of_cross, u)?;
-                forces.divide(u);
                 self.reduce(m, u, column);
                 column[k] += 1.0;
             }

@@ -91,6 +91,7 @@ impl Forces for Structure {
         let mut all = vec![0.0; self.n];
         all[force * M..(force + 1) * M].copy_from_slice(w);
         u.copy_from_slice(&self.response(&all));
+        self.divide(u);
         Ok(())
     }
 
@@ -101,7 +102,7 @@ impl Forces for Structure {
         Ok(())
     }
 
-    fn divide(&self, u: &mut [f64]) {
+    fn divide(&mut self, u: &mut [f64]) {
         u.iter_mut().zip(&self.diagonal).for_each(|(u, d)| *u /= d);
     }
 }

@@ -2,15 +2,15 @@
 //! strongly, then by those of the mean coupling of each pair of numbers by itself, and by the identity beyond.
 //!
 //! GMRES iterates with K M⁻¹, where M holds the block, the pairs, and the units of the other unknowns. A block that is
-//! the whole matrix is solved directly. A wheel has the waves of `sector_waves` instead, or the terms of `rank_factors`.
+//! the whole matrix is solved directly. A wheel has the waves of `sector_waves` instead; the terms of `rank_factors` serve where they
+//! are few.
 
 use crate::error::{Result, Status, boxed, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::factors::lu::Lu;
 use crate::linalg::iterative::gmres::Gmres;
 use crate::linalg::newton::linear_system::dense::DenseSystem;
-use crate::linalg::newton::linear_system::rank_factors::RankFactors;
-use crate::linalg::newton::linear_system::sector_waves::RingFactors;
+use crate::linalg::newton::linear_system::rank_or_waves::RankOrWaves;
 use crate::linalg::newton::linear_system::{Border, Jacobian, LinearSystem, MatrixFree, Ring};
 use num_complex::Complex64;
 
@@ -21,13 +21,17 @@ const CONTEXT: &str = "the linear system";
 /// Kind: tuned; measured on: not recorded.
 const SPARED: usize = 12;
 
+/// Unknowns from which terms of low rank are looked for.
+/// Kind: tuned; measured on: a finite-element sector with 60 contacts at 5 to 16 harmonics.
+const RANK_FROM: usize = 960;
+
 /// A bordered system that is solved by iteration.
 pub struct KrylovSystem {
     block: DenseSystem,
     lengths: Lengths,
     pairs: Pairs,
-    /// Factors of a wheel, in place of block and pairs; `None` elsewhere.
-    wheel: Option<Box<WheelFactors>>,
+    /// Factors in place of block and pairs, where they serve.
+    other: Option<Box<RankOrWaves>>,
     memory: Gmres,
     most_products: usize,
     /// Number of products of the last solution.
@@ -49,50 +53,6 @@ pub struct KrylovVectors {
     reduced: Vec<f64>,
     product: Vec<f64>,
     scaled: Vec<f64>,
-}
-
-/// Factors of a wheel: of its waves, or of terms of low rank where these were factored last.
-struct WheelFactors {
-    waves: RingFactors,
-    rank: RankFactors,
-    by_rank: bool,
-}
-
-impl WheelFactors {
-    fn factor(&mut self, operator: &mut dyn MatrixFree, interrupt: &Interrupt<'_>) -> Result<()> {
-        self.by_rank = match operator.forces() {
-            Some(forces) => self.rank.factor(forces, interrupt)?,
-            None => false,
-        };
-        if self.by_rank {
-            return Ok(());
-        }
-        self.waves.factor(operator, interrupt)
-    }
-
-    fn set_border(&mut self, operator: &mut dyn MatrixFree, border: Border<'_>) -> Result<()> {
-        match operator.forces().filter(|_| self.by_rank) {
-            Some(forces) => return self.rank.set_border(forces, border),
-            None => self.waves.set_border(border),
-        }
-        Ok(())
-    }
-
-    fn solve(&mut self, operator: &mut dyn MatrixFree, v: &mut [f64]) -> Result<()> {
-        match operator.forces().filter(|_| self.by_rank) {
-            Some(forces) => return self.rank.solve(forces, v),
-            None => self.waves.solve(v),
-        }
-        Ok(())
-    }
-
-    fn is_positive(&self) -> bool {
-        if self.by_rank {
-            self.rank.is_positive()
-        } else {
-            self.waves.is_positive()
-        }
-    }
 }
 
 /// Division of the unknowns into groups, and of each group into parts.
@@ -185,7 +145,7 @@ impl KrylovSystem {
         Ok(Self {
             block: DenseSystem::new(order)?,
             pairs: Pairs::new(groups, lengths)?,
-            wheel: None,
+            other: None,
             lengths,
             memory: Gmres::default(),
             most_products,
@@ -209,15 +169,8 @@ impl KrylovSystem {
     /// # Errors
     /// `OutOfMemory`.
     pub fn of_ring(n: usize, (group, ring): (usize, Ring<'_>), most_products: usize) -> Result<Self> {
-        let factors = boxed(|| {
-            Ok(WheelFactors {
-                waves: RingFactors::new(n, group, ring)?,
-                rank: RankFactors::new(n, group, ring.sectors)?,
-                by_rank: false,
-            })
-        })?;
         Ok(Self {
-            wheel: Some(factors),
+            other: Some(boxed(|| RankOrWaves::of_wheel(n, (group, ring)))?),
             ..Self::new(n, Lengths::of_ring(group), most_products)?
         })
     }
@@ -234,14 +187,14 @@ impl KrylovSystem {
 
     /// v ← M⁻¹ v with the preconditioner M.
     fn precondition(
-        (block, pairs, wheel): (&mut DenseSystem, &mut Pairs, &mut Option<Box<WheelFactors>>),
+        (block, pairs, other): (&mut DenseSystem, &mut Pairs, &mut Option<Box<RankOrWaves>>),
         jacobian: &mut dyn Jacobian,
         lengths: Lengths,
         reduced: &mut [f64],
         v: &mut [f64],
     ) -> Result<()> {
-        if let Some(wheel) = wheel {
-            return wheel.solve(operator(jacobian)?, v);
+        if let Some(other) = other.as_mut().filter(|other| other.serve()) {
+            return other.solve(operator(jacobian)?, v);
         }
         for (to, from) in reduced.iter_mut().zip(Self::of_block(v, lengths)) {
             *to = from;
@@ -277,7 +230,7 @@ impl KrylovSystem {
         self.positive = true;
         let is_direct = self.is_direct();
         let (factors, reduced) = (
-            (&mut self.block, &mut self.pairs, &mut self.wheel),
+            (&mut self.block, &mut self.pairs, &mut self.other),
             &mut self.vectors.reduced,
         );
         if !is_direct {
@@ -317,6 +270,14 @@ impl KrylovSystem {
         self.block
             .set_border(column, self.scales, Self::of_block(&self.vectors.row, lengths));
         Ok(())
+    }
+
+    /// Whether terms of low rank are to be looked for, and no memory for them was made yet.
+    fn may_have_terms(&self, operator: &mut dyn MatrixFree) -> bool {
+        self.other.is_none()
+            && self.lengths.behind == 0
+            && self.vectors.column.len() >= RANK_FROM
+            && operator.forces().is_some()
     }
 
     /// Whether the block is the whole matrix.
@@ -361,8 +322,8 @@ impl LinearSystem for KrylovSystem {
         self.scales = border.scales;
         self.are_own = false;
         interrupt.check()?;
-        if let Some(wheel) = &mut self.wheel {
-            wheel.set_border(operator(jacobian)?, border)?;
+        if let Some(other) = self.other.as_mut().filter(|other| other.serve()) {
+            other.set_border(operator(jacobian)?, border)?;
             return operator(jacobian)?.keep();
         }
         if self.is_direct() {
@@ -375,14 +336,19 @@ impl LinearSystem for KrylovSystem {
 
     fn factor(&mut self, jacobian: &mut dyn Jacobian, interrupt: &Interrupt<'_>) -> Result<()> {
         self.are_own = true;
-        if let Some(wheel) = &mut self.wheel {
+        if !self.is_direct() && self.may_have_terms(operator(jacobian)?) {
+            let (n, group) = (self.vectors.column.len(), self.lengths.group);
+            self.other = Some(boxed(|| RankOrWaves::of_groups(n, group))?);
+        }
+        if let Some(other) = &mut self.other {
             let border = Border {
                 column: &self.vectors.column,
                 scales: self.scales,
                 row: &self.vectors.row,
             };
-            wheel.factor(operator(jacobian)?, interrupt)?;
-            return wheel.set_border(operator(jacobian)?, border);
+            if other.factor(operator(jacobian)?, interrupt)? {
+                return other.set_border(operator(jacobian)?, border);
+            }
         }
         if !self.is_direct() {
             self.fill_block(jacobian)?;
@@ -440,8 +406,8 @@ impl LinearSystem for KrylovSystem {
     /// Sign of det K = det M · det K M⁻¹. The determinant of a complex matrix that is treated as a real one is
     /// positive.
     fn is_positive(&self) -> bool {
-        let factors = match &self.wheel {
-            Some(wheel) => wheel.is_positive(),
+        let factors = match self.other.as_ref().filter(|other| other.serve()) {
+            Some(other) => other.is_positive(),
             None => self.block.is_positive(),
         };
         factors == self.positive

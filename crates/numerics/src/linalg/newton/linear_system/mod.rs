@@ -7,8 +7,8 @@
 //! where J = ∂R/∂u belongs to a problem, r = ∂R/∂p is its derivative by the parameter, s_u and s_p are the units of
 //! unknowns and parameter, and t is the row of one further condition. One file a backend: [`dense`] factors the whole
 //! matrix, [`krylov`] iterates with products, and factors the block of the strongly coupled unknowns and the mean
-//! coupling of those beyond it, or, of a wheel, the waves that equal sectors would have, or the terms of low rank by which its
-//! contacts differ from stuck ones.
+//! coupling of those beyond it, or, of a wheel, the waves that equal sectors would have, or the terms of low rank by which
+//! contacts differ from what they do for most of the period.
 
 pub mod automatic;
 mod continuum;
@@ -17,6 +17,7 @@ pub mod dense;
 mod eliminated_border;
 pub mod krylov;
 mod rank_factors;
+mod rank_or_waves;
 mod sector_waves;
 
 use crate::error::{Result, fail};
@@ -106,7 +107,7 @@ pub trait MatrixFree {
         fail!(Internal, "a matrix that has no sectors")
     }
 
-    /// J by the forces of its groups, for a wheel; `None` for other structures.
+    /// J by the forces of its groups; `None` where it is not known so.
     fn forces(&mut self) -> Option<&mut dyn Forces> {
         None
     }
@@ -125,16 +126,26 @@ pub trait MatrixFree {
     fn multiply(&mut self, d: &[f64], out: &mut [f64]) -> Result<()>;
 }
 
-/// A Jacobian J = D + G F with a diagonal D, a flexibility G, and the derivatives F of forces in groups by motions in groups.
+/// A Jacobian J = D + G F with a matrix D that is solved quickly, a flexibility G, and the derivatives F of forces in groups by motions
+/// in groups.
 pub trait Forces {
     /// Number of groups of forces and motions.
     fn groups(&self) -> usize;
 
-    /// Share of F, by its norm, in which sectors differ from their mean at the point evaluated last.
+    /// Share of F, by its norm, in which the sectors of a wheel differ from their mean at the point evaluated last.
     ///
     /// # Errors
     /// `StoppedByCaller`.
     fn unlikeness(&mut self) -> Result<f64>;
+
+    /// Chooses D for the point evaluated last, and factors it: the calls below are about this D, [`Self::rows`] before the problem is
+    /// evaluated elsewhere. `false` where it is singular.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    fn begin(&mut self, _interrupt: &Interrupt<'_>) -> Result<bool> {
+        Ok(true)
+    }
 
     /// Writes the rows of F that belong to one group at the point evaluated last to `rows`, a block of columns for
     /// each motion group, whose index it adds to `motions`; both stay empty where all are zero. Returns the stiffness
@@ -144,7 +155,7 @@ pub trait Forces {
     /// `OutOfMemory`; `StoppedByCaller`.
     fn rows(&mut self, force: usize, rows: &mut Vec<f64>, motions: &mut Vec<usize>) -> Result<f64>;
 
-    /// u ← G w for the forces w of one group.
+    /// u ← D⁻¹ G w for the forces w of one group.
     ///
     /// # Errors
     /// `StoppedByCaller`.
@@ -157,7 +168,7 @@ pub trait Forces {
     fn subtract_response(&mut self, w: &[f64], u: &mut [f64]) -> Result<()>;
 
     /// u ← D⁻¹ u.
-    fn divide(&self, u: &mut [f64]);
+    fn divide(&mut self, u: &mut [f64]);
 }
 
 /// Sectors of a wheel whose groups of unknowns follow each other.

@@ -1,11 +1,12 @@
-//! Factors of a matrix that is the identity but for terms of low rank: a preconditioner where sectors of a wheel are unlike.
+//! Factors of a matrix that is solved quickly but for terms of low rank: a preconditioner where many contacts slip.
 //!
-//! With J = D + G U Vᵀ, D diagonal, the matrix C = I + Vᵀ D⁻¹ G U has the order of the rank alone, and
+//! With J = D + G U Vᵀ the matrix C = I + Vᵀ D⁻¹ G U has the order of the rank alone, and
 //!
 //! > J⁻¹ = D⁻¹ (1 − G U C⁻¹ Vᵀ D⁻¹),  det J = det D · det C.
 //!
 //! A contact that slips for a part of the period loses its stiffness there: its Jacobian differs from the stuck one by a matrix
-//! whose rank grows with that part and hardly with the harmonics. The iteration finds what the terms leave.
+//! whose rank grows with that part and hardly with the harmonics. So does that of one which sticks for a part of the period from that of
+//! one which slides. The iteration finds what the terms leave.
 
 use crate::error::{Result, Status, try_vec};
 use crate::interrupt::Interrupt;
@@ -31,14 +32,29 @@ const BASIS_OF_WAVES: usize = 40;
 /// Kind: tuned; measured on: wheels of 24 sectors.
 const ALIKE_SECTORS: f64 = 0.3;
 
+/// Products that a matrix takes with factors of a block and of pairs, for steps, tests of steps and tangents.
+/// Kind: tuned; measured on: a finite-element sector with 60 contacts with 3 to 83 harmonics, 30 to 300 products.
+const PRODUCTS_OF_PAIRS: f64 = 150.0;
+
+/// Multiplications of factors that take the time of one of a product.
+/// Kind: tuned; measured on: matrices of order 200 to 1,000.
+const OF_CORE: f64 = 0.2;
+
+/// Multiplications that other factors take for the same.
+enum Beside {
+    /// One product with factors of the waves of a wheel.
+    Waves { of_product: f64 },
+    /// All products of a matrix with factors of a block and of pairs.
+    Pairs { of_matrix: f64 },
+}
+
 /// Factors of the core matrix C, with memory.
 pub(super) struct RankFactors {
     crosses: Crosses,
     lu: Option<Lu<f64>>,
     /// Length of each group.
     group: usize,
-    /// Multiplications of one product with factors of waves.
-    of_product: f64,
+    beside: Beside,
     x: Vec<f64>,
     u: Vec<f64>,
     border: EliminatedBorder,
@@ -55,23 +71,50 @@ impl RankFactors {
             lu: None,
             group,
             // The product itself, its waves and their transforms, and its orthogonalisation.
-            of_product: n as f64 * (4 * (n / sectors.max(1)) + 4 * sectors + 4 * BASIS_OF_WAVES) as f64,
+            beside: Beside::Waves {
+                of_product: n as f64 * (4 * (n / sectors.max(1)) + 4 * sectors + 4 * BASIS_OF_WAVES) as f64,
+            },
             x: Vec::new(),
             u: Vec::new(),
             border: EliminatedBorder::new(n)?,
         })
     }
 
-    /// Factors a Jacobian; `false` where factors of its waves are better.
+    /// Memory for `n` unknowns in groups that are no sectors.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn beside_pairs(n: usize, group: usize) -> Result<Self> {
+        let groups = n / group.max(1);
+        Ok(Self {
+            // The flexibility, the pairs and the laws, and the orthogonalisation.
+            beside: Beside::Pairs {
+                of_matrix: PRODUCTS_OF_PAIRS * n as f64 * (4 * groups + group + 2 * BASIS_OF_WAVES) as f64,
+            },
+            ..Self::new(n, group, 1)?
+        })
+    }
+
+    /// Factors a Jacobian; `false` where other factors are better.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
     pub fn factor(&mut self, forces: &mut dyn Forces, interrupt: &Interrupt<'_>) -> Result<bool> {
-        let unlikeness = forces.unlikeness()?;
-        if unlikeness < ALIKE_SECTORS {
+        let n = forces.groups() * self.group;
+        let most = match self.beside {
+            Beside::Waves { of_product } => {
+                let unlikeness = forces.unlikeness()?;
+                if unlikeness < ALIKE_SECTORS {
+                    return Ok(false);
+                }
+                let products = (PRODUCTS_OF_WAVES / (1.0 - unlikeness).powi(2)).min(MOST_PRODUCTS_OF_WAVES);
+                self.most(1.0, products * of_product, n)
+            }
+            Beside::Pairs { of_matrix } => self.most(OF_CORE, of_matrix, n),
+        };
+        if !forces.begin(interrupt)? {
             return Ok(false);
         }
-        let most = self.most(unlikeness, forces.groups() * self.group);
         let Some(rank) = self.crosses.find(forces, self.group, most)? else {
             return Ok(false);
         };
@@ -96,13 +139,10 @@ impl RankFactors {
         }
     }
 
-    /// Highest rank at which the factors take no more multiplications than iterations with waves.
-    fn most(&self, unlikeness: f64, n: usize) -> usize {
-        let products = (PRODUCTS_OF_WAVES / (1.0 - unlikeness).powi(2)).min(MOST_PRODUCTS_OF_WAVES);
-        let of_rank = |rank: usize| (rank * rank) as f64 * (rank as f64 / 3.0 + self.group as f64);
-        (1..n)
-            .take_while(|rank| of_rank(*rank) <= products * self.of_product)
-            .count()
+    /// Highest rank at which the core matrix takes no more than these multiplications, each of its factors counted as so many.
+    fn most(&self, of_factors: f64, multiplications: f64, n: usize) -> usize {
+        let of_rank = |rank: usize| (rank * rank) as f64 * (of_factors * rank as f64 / 3.0 + self.group as f64);
+        (1..n).take_while(|rank| of_rank(*rank) <= multiplications).count()
     }
 
     /// Takes over the border of the bordered matrix.
