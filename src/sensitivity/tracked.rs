@@ -2,7 +2,7 @@
 
 use crate::condense::Resolution;
 use crate::continuation::Point;
-use crate::error::{Result, fail, try_vec};
+use crate::error::{Error, Result, fail, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::harmonics::{Corrected, Estimate};
 use crate::linalg::newton::linear_system::Jacobian;
@@ -76,9 +76,12 @@ pub(crate) trait Tracked: Jacobian {
 
 impl<T: Tracked> Problem for T {
     fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Residual) -> Result<()> {
-        let step = self.unknowns().step;
-        by_differences(out, p, step, |p, values| self.equations(u, p, false, values))?;
-        out.scale = self.equations(u, p, true, &mut out.values)?;
+        let Unknowns { step, range, .. } = *self.unknowns();
+        // A correction may leave the range, where the model may not exist: the step is then too long.
+        let is_inside = range.low() <= p && p <= range.high();
+        let within = |e: Error| if is_inside { e } else { e.recoverable() };
+        by_differences(out, p, step, |p, values| self.equations(u, p, false, values)).map_err(within)?;
+        out.scale = self.equations(u, p, true, &mut out.values).map_err(within)?;
         out.rounding = 0.0;
         Ok(())
     }
@@ -140,7 +143,8 @@ fn by_differences(
 pub(crate) struct Unknowns {
     pub start: Vec<f64>,
     pub matrix: Vec<f64>,
-    /// Step of the differences by the parameter.
+    /// Range of the parameter, and step of the differences by it.
+    pub range: Range,
     pub step: f64,
     /// Whether the reciprocal of the result is observed.
     pub is_reciprocal: bool,
@@ -155,6 +159,7 @@ impl Unknowns {
         Ok(Self {
             matrix: square(start.len())?,
             start,
+            range,
             step: PARAMETER_STEP * range.width(),
             is_reciprocal: false,
         })

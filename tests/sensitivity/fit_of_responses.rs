@@ -431,3 +431,33 @@ fn bounds_ties_and_kinds_are_kept() {
     assert_eq!(bound.free, 2);
     assert!(bound.chi2 > found.chi2 && bound.covariance[5] == 0.0);
 }
+
+/// The response of an undamped oscillator beside its resonance has the best damping at zero, where no point depends on a factor.
+#[test]
+fn damping_that_is_best_at_zero_is_told_as_such() {
+    let damping = 0.02;
+    let model = dense(&[1.0], &[1.0]).damping(&[damping]).force(0, 1, 1.0).build();
+    let omega = [0.7, 0.8, 0.9, 0.95, 1.05, 1.1, 1.2];
+    let value: Vec<_> = omega.iter().map(|w| Complex64::from(1.0 / (1.0 - w * w))).collect();
+    let sigma: Vec<_> = value.iter().map(|x| 1e-2 * x.norm()).collect();
+    let set = FitData {
+        x: &omega,
+        value: &value,
+        sigma: &sigma,
+        ..FitData::default()
+    };
+    let factor = [Parameter::Factor {
+        which: MatrixKind::Damping,
+    }];
+    let found = fit(
+        &model,
+        (&factor, &[Unknown::default()]),
+        &[set],
+        &nine_harmonics(),
+        &FitOptions::default(),
+        &mut Hooks::default(),
+    );
+    let refused = found.unwrap_err();
+    assert_eq!(refused.status, Status::Singular);
+    assert!(refused.message().contains("at zero"), "{}", refused.message());
+}

@@ -54,7 +54,7 @@ const FEW_FOR_EACH: usize = 4;
 
 /// Rigid-body modes of a body in space.
 /// Kind: fixed.
-const RIGID_MODES: usize = 6;
+pub(crate) const RIGID_MODES: usize = 6;
 
 /// Largest ω² of a rigid motion, relative to that of the stiffest degree of freedom alone.
 /// Kind: rounding.

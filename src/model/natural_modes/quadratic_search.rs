@@ -6,11 +6,13 @@
 
 use crate::error::{Result, Status, try_push};
 use crate::interrupt::Interrupt;
+use crate::linalg::exact_sums::quadratic::{QUADRATIC_ROUNDING, quadratic, terms};
 use crate::linalg::iterative::lanczos;
 use crate::linalg::iterative::lanczos::DENSE_IF_HARD;
 use crate::linalg::iterative::near_shift::{Goal, Near, NearShift};
 use crate::linalg::sparse_storage::definite::resists_all_motion;
 use crate::linalg::sparse_storage::sparse::{Csc, Form};
+use crate::model::natural_modes::linear_modes::RIGID_MODES;
 use crate::model::natural_modes::quadratic_problem::{ONE_VALUE, Pair, Quadratic, is_one};
 use crate::options::Range;
 use core::f64::consts::SQRT_2;
@@ -219,15 +221,31 @@ fn first_disc(
 /// computed.
 fn estimate(problem: &Quadratic<'_>, hermitian: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Result<f64> {
     let n = problem.mass.rows;
-    match lanczos::lowest(hermitian, problem.mass, count, interrupt) {
-        Ok(pairs) => {
-            let highest = pairs.values.iter().fold(0.0_f64, |m, x| m.max(*x));
-            if highest > 0.0 {
-                return Ok(highest.sqrt());
+    // Motions that nothing holds are no modes, and rounding is all that is known of their frequencies.
+    let mut wanted = count;
+    for _ in 0..2 {
+        match lanczos::lowest(hermitian, problem.mass, wanted, interrupt) {
+            Ok(pairs) => {
+                let held = |shape: &[Complex64]| {
+                    quadratic(hermitian, shape).abs() > QUADRATIC_ROUNDING * terms(hermitian, shape)
+                };
+                let (mut highest, mut rigid) = (0.0_f64, 0);
+                for (value, shape) in pairs.values.iter().zip(pairs.vectors.column_iter()) {
+                    interrupt.check()?;
+                    if held(shape.as_slice()) {
+                        highest = highest.max(*value);
+                    } else {
+                        rigid += 1;
+                    }
+                }
+                if highest > 0.0 && wanted >= count + rigid {
+                    return Ok(highest.sqrt());
+                }
+                wanted = count + rigid.max(RIGID_MODES);
             }
+            Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => return Err(e),
+            Err(_) => break,
         }
-        Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => return Err(e),
-        Err(_) => {}
     }
     let sum = |a: &Csc| -> f64 { (0..n).map(|i| a.get(i, i).re.abs()).sum() };
     Ok((sum(hermitian) / sum(problem.mass)).sqrt())
