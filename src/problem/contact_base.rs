@@ -1,5 +1,5 @@
-//! What each contact does for most of the period, as a matrix that is solved harmonic by harmonic: it sticks with its stiffness s, or
-//! slides without any.
+//! The matrix of what each contact does for most of the period, which is solved harmonic by harmonic: it sticks with its stiffness s,
+//! or slides without any.
 //!
 //! Newton's matrix J = 1 + G (∂f/∂y − κ) is then D + G F with
 //!
@@ -111,7 +111,7 @@ impl ContactBase {
     }
 
     /// The stiffness s of a force in the i-th carried harmonic.
-    pub fn of(&self, condensed: &Condensed, (force, i): (usize, usize)) -> Complex64 {
+    pub fn of(&self, condensed: &Condensed, force: usize, i: usize) -> Complex64 {
         match self.stiffness[force] {
             Some(s) if condensed.set().numbers()[i] > 0 => s.into(),
             _ => condensed.kappa(force, i),

@@ -1,4 +1,4 @@
-//! Newton's matrix of a forced response by its contacts, J = D + G F with the flexibility G. Of a wheel D is the identity, but for the
+//! Newton's matrix of a forced response by its contacts, J = D + G F with the flexibility G. Wheels have the identity D, but for the
 //! floors of means, and F = ∂f/∂y − κ has a low rank where contacts slip for a part of the period; for other structures see
 //! [`ContactBase`].
 
@@ -56,7 +56,7 @@ impl Forces for HarmonicBalance<'_> {
                 let (at, kappa) = (set.offset(i), self.condensed.kappa(force, i));
                 stiffness = stiffness.max(kappa.norm());
                 let kappa = match &self.products.base {
-                    Some(base) => base.of(self.condensed, (force, i)),
+                    Some(base) => base.of(self.condensed, force, i),
                     None => kappa,
                 };
                 own[at * m + at] -= kappa.re;

@@ -84,7 +84,7 @@ pub(super) struct ProductMemory {
     pub silent: Vec<bool>,
     /// Means over the sectors, where the structure is a whole wheel.
     pub ring: Option<Box<RingBlocks>>,
-    /// What contacts do for most of the period, of other structures.
+    /// The matrix of what contacts do for most of the period, of other structures.
     pub base: Option<Box<ContactBase>>,
 }
 

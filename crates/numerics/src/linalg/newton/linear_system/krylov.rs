@@ -170,7 +170,7 @@ impl KrylovSystem {
     /// `OutOfMemory`.
     pub fn of_ring(n: usize, (group, ring): (usize, Ring<'_>), most_products: usize) -> Result<Self> {
         Ok(Self {
-            other: Some(boxed(|| RankOrWaves::of_wheel(n, (group, ring)))?),
+            other: Some(boxed(|| RankOrWaves::of_wheel(n, group, ring))?),
             ..Self::new(n, Lengths::of_ring(group), most_products)?
         })
     }

@@ -25,7 +25,7 @@ impl RankOrWaves {
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn of_wheel(n: usize, (group, ring): (usize, Ring<'_>)) -> Result<Self> {
+    pub fn of_wheel(n: usize, group: usize, ring: Ring<'_>) -> Result<Self> {
         Ok(Self {
             waves: Some(RingFactors::new(n, group, ring)?),
             rank: RankFactors::new(n, group, ring.sectors)?,
