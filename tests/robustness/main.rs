@@ -14,6 +14,7 @@ mod linear_stretches;
 mod near_rigid;
 mod near_rigid_chains;
 mod near_rigid_slip;
+mod near_rigid_stuck;
 mod other_curves;
 mod passed_resonances;
 mod random_chains;

@@ -29,8 +29,13 @@
 //! m; another one makes x fall slower.
 //!
 //! A stick of a finite stiffness rings at h_r = √(k/m)/ω. The law has the effect of a ring on the slip after it, as a delay of the force.
-//! In the equations s/k would count it again, as a part (h/h_r)² of the jumps of f in the harmonic h: 1/k is divided by
-//! (1 + (h/h_s)²)², h_s = h_r/10, which leaves it to what moves slowly, such as the harmonics of the load.
+//! In the equations s/k would count it again, as a part (h/h_r)² of the jumps of f in the harmonic h. A stick alone has f = α x and y = f/k
+//! with any s, so that s is free to leave this part out:
+//!
+//! > s = (ω/ω₀)² (ih)² / (1 − (1 − ρ) (h/h_r)²),  ρ = 1/(1 + (h/h_s)²)²,  h_s = h_r/10.
+//!
+//! Then s (G + 1/k) − 1/α → −ρ (h/h_r)²/α in the high harmonics of a mass: forces that slip have the compliance 1/k in what moves slowly,
+//! and a contact that sticks has it in all harmonics. From half of a ring on no load acts and none resonates: there 1/k is 0.
 //!
 //! ## The mean
 //!
@@ -45,9 +50,13 @@ use num_complex::Complex64;
 /// Kind: rounding.
 pub(crate) const CREEP: f64 = 1e-6;
 
-/// Share of the harmonic of a ring up to which a stick beside a mass is soft.
+/// Share of the harmonic of a ring up to which forces that slip move a mass by their compliance.
 /// Kind: tuned; measured on: the chain of 8 masses of `tests/robustness/near_rigid.rs` with kt/k = 3e4.
 const SOFT_BELOW_RING: f64 = 0.1;
+
+/// Share of the harmonic of a ring from which a stick beside a mass is rigid.
+/// Kind: fixed.
+const RIGID_FROM_RING: f64 = 0.5;
 
 /// Exchange of the motion y of one coordinate for x = f/α + d(y − f/k)/dτ, where f is the force of its slider.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,6 +69,8 @@ pub struct Exchange {
     pub ring: f64,
     /// ω₀, where the exchanged motion is the force on a mass α/ω₀²; `None`: it is a rate.
     pub mass_at: Option<f64>,
+    /// Highest angular frequency of the points.
+    pub(crate) fastest: f64,
 }
 
 impl Exchange {
@@ -69,20 +80,31 @@ impl Exchange {
         match self.mass_at {
             Some(at) => {
                 let s = -(h * omega / at).powi(2);
-                (s.into(), (2.0 * s / omega).into())
+                let left = 1.0 - self.counted_by_law(number, at) * (h * omega / self.ring).powi(2);
+                ((s / left).into(), (2.0 * s / (omega * left * left)).into())
             }
             None if number == 0 => (CREEP.into(), Complex64::ZERO),
             None => (Complex64::new(0.0, h), Complex64::ZERO),
         }
     }
 
-    /// Compliance of the stick stiffness in a harmonic: beside a mass the force of a stick that rings is late instead.
-    pub(crate) fn compliance_in(&self, number: usize) -> f64 {
-        let Some(at) = self.mass_at else {
-            return self.compliance;
-        };
+    /// Share of the compliance of a stick beside a mass whose effect on slips the law has.
+    fn counted_by_law(&self, number: usize, at: f64) -> f64 {
+        if self.is_rigid_in(number) {
+            return 0.0;
+        }
         let h = number as f64 * at / (SOFT_BELOW_RING * self.ring);
-        self.compliance / (1.0 + h * h).powi(2)
+        1.0 - (1.0 + h * h).powi(-2)
+    }
+
+    /// Whether a stick beside a mass is rigid in a harmonic, as it would ring.
+    fn is_rigid_in(&self, number: usize) -> bool {
+        self.mass_at.is_some() && number as f64 * self.fastest >= RIGID_FROM_RING * self.ring
+    }
+
+    /// Compliance of the stick stiffness in a harmonic.
+    pub(crate) fn compliance_in(&self, number: usize) -> f64 {
+        if self.is_rigid_in(number) { 0.0 } else { self.compliance }
     }
 
     /// The motion y in a harmonic, where the exchanged one is x and the force f.

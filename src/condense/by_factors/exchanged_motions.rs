@@ -70,6 +70,7 @@ pub(crate) fn select_exchanged(
                 compliance,
                 ring: f64::INFINITY,
                 mass_at: None,
+                fastest: 0.0,
             });
             reference[c] = 0.0;
         }
@@ -109,6 +110,12 @@ impl Condensed {
             .filter_map(|e| Some((e.ring, e.mass_at?)));
         let below = with_mass.map(|(ring, omega)| (ring / (RING_ABOVE * omega)) as usize);
         below.min().unwrap_or(usize::MAX)
+    }
+
+    /// The highest harmonic on which a force acts.
+    fn highest_load(&self) -> f64 {
+        let loads = self.blocks().iter().filter(|block| block.has_force());
+        loads.map(|block| block.number).max().unwrap_or(0) as f64
     }
 
     /// Sliders whose motions are exchanged.
@@ -196,7 +203,11 @@ impl Condensed {
                     let there = without_reference(self, (i, near / number), interrupt)?;
                     exchange.ring = near * (there[c * n + c].norm() / exchange.compliance).sqrt();
                 }
-                if is_mass && exchange.ring >= MASS_BELOW_RING * sweep.stop {
+                // Loads act on sticks far below their rings.
+                let below_ring = MASS_BELOW_RING.max(RING_ABOVE * self.highest_load());
+                let fastest = sweep.start.max(sweep.stop);
+                if is_mass && exchange.ring >= below_ring * fastest {
+                    exchange.fastest = fastest;
                     exchange.stiffness = (NOMINAL * NOMINAL * at_nominal).recip();
                     exchange.mass_at = Some(omega / NOMINAL);
                 }
