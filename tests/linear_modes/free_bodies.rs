@@ -1,6 +1,7 @@
 //! Damped modes and responses of structures that nothing holds, of every size: their rigid motion is no vibration, whatever rounding
 //! makes of its two eigenvalues zero.
 
+use crate::common::models::dense;
 use crate::common::{all_harmonics, harmonics, sweep};
 use hbvib::{Contact, Hooks, LinearContacts, MatrixKind, MatrixView, Model, Speed, damped_modes};
 use nalgebra::{DMatrix, DVector};
@@ -83,6 +84,58 @@ fn the_rigid_motion_under_mass_damping_is_no_damped_mode() {
             let right = Complex64::new(-0.5 * ALPHA, (own * own - 0.25 * ALPHA * ALPHA).sqrt());
             let off = (found.eigenvalue[k] - right).norm() / right.norm();
             assert!(off < 1e-9, "{n}, mode {k}: {} {right}", found.eigenvalue[k]);
+        }
+    }
+}
+
+/// M and K of a free beam of EI = ρA = L = 1 by Hermite elements, whose rotations have another unit than its deflections.
+fn free_beam(elements: usize) -> Model {
+    let (n, length) = (2 * elements + 2, 1.0 / elements as f64);
+    let (mut mass, mut stiffness) = (DMatrix::<f64>::zeros(n, n), DMatrix::<f64>::zeros(n, n));
+    let l = length;
+    let inertia = [
+        [156.0, 22.0 * l, 54.0, -13.0 * l],
+        [22.0 * l, 4.0 * l * l, 13.0 * l, -3.0 * l * l],
+        [54.0, 13.0 * l, 156.0, -22.0 * l],
+        [-13.0 * l, -3.0 * l * l, -22.0 * l, 4.0 * l * l],
+    ];
+    let bending = [
+        [12.0, 6.0 * l, -12.0, 6.0 * l],
+        [6.0 * l, 4.0 * l * l, -6.0 * l, 2.0 * l * l],
+        [-12.0, -6.0 * l, 12.0, -6.0 * l],
+        [6.0 * l, 2.0 * l * l, -6.0 * l, 4.0 * l * l],
+    ];
+    for element in 0..elements {
+        for i in 0..4 {
+            for j in 0..4 {
+                mass[(2 * element + i, 2 * element + j)] += inertia[i][j] * l / 420.0;
+                stiffness[(2 * element + i, 2 * element + j)] += bending[i][j] / l.powi(3);
+            }
+        }
+    }
+    dense(mass.as_slice(), stiffness.as_slice()).build()
+}
+
+/// cosh β cos β = 1 has β₁ = 4.730040744862704: the frequencies of the rigid motions are rounding, and no place to search about.
+#[test]
+fn the_first_mode_of_a_free_beam_is_its_first_bending_however_few_are_requested() {
+    const FIRST: f64 = 4.730_040_744_862_704;
+    for elements in [20, 49, 51, 100, 120, 200] {
+        for (alpha, beta) in [(0.0, 0.0), (0.0, 1e-4), (0.5, 1e-4)] {
+            let mut model = free_beam(elements);
+            model.set_rayleigh(alpha, beta).unwrap();
+            for count in [1, 2, 4] {
+                let found = damped_modes(&model, 0, LinearContacts::Free, count, &mut Hooks::default()).unwrap();
+                let own = FIRST * FIRST;
+                let half = 0.5 * (alpha + beta * own * own);
+                let right = Complex64::new(-half, (own * own - half * half).sqrt());
+                let off = (found.eigenvalue[0] - right).norm() / right.norm();
+                assert!(
+                    off < 1e-6,
+                    "{elements} elements, {alpha} {beta}, {count}: {}",
+                    found.eigenvalue[0]
+                );
+            }
         }
     }
 }

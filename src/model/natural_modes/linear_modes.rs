@@ -3,7 +3,7 @@
 //! the loss of a complex symmetric stiffness.
 
 use crate::contact::Role;
-use crate::error::{Result, Status, check_memory, fail, try_copy, try_extend, try_push, try_vec};
+use crate::error::{Result, Status, check_memory, fail, try_extend, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::dense::eigen::{self, Pairs};
 use crate::linalg::exact_sums::quadratic::{QUADRATIC_ROUNDING, form, quadratic, terms};
@@ -304,17 +304,24 @@ impl Pencil {
 
     /// Modes from eigenpairs; an eigenvalue below zero beyond rounding belongs to a motion that grows.
     fn modes(&self, pairs: &Pairs) -> Result<LinearModes> {
-        let mut modes = LinearModes {
-            omega: Vec::new(),
-            shapes: try_copy(pairs.vectors.as_slice(), CONTEXT)?,
-        };
-        for (&value, shape) in pairs.values.iter().zip(pairs.vectors.column_iter()) {
+        let mut ranked = Vec::new();
+        for (k, (&value, shape)) in pairs.values.iter().zip(pairs.vectors.column_iter()).enumerate() {
             let omega = if value < 0.0 {
                 -self.growth(shape.as_slice())
             } else {
                 value.sqrt()
             };
+            try_push(&mut ranked, (omega, k), CONTEXT)?;
+        }
+        // Quotients of several rigid motions have the order of their rounding.
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut modes = LinearModes {
+            omega: Vec::new(),
+            shapes: Vec::new(),
+        };
+        for (omega, k) in ranked {
             try_push(&mut modes.omega, omega, CONTEXT)?;
+            try_extend(&mut modes.shapes, pairs.vectors.column(k).as_slice(), CONTEXT)?;
         }
         Ok(modes)
     }
