@@ -3,7 +3,7 @@
 //! given as a matrix from closed forms of the modes, with sliding contacts, next to resonances and between them.
 
 use crate::common::{harmonics, omega_range};
-use hbvib::{Contact, Hooks, MatrixKind, MatrixView, Model, SolverOptions, Speed, forced_response};
+use hbvib::{Contact, Hooks, MatrixKind, MatrixView, Model, Part, SolverOptions, Speed, forced_response};
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -50,7 +50,10 @@ fn chain(n: usize, coupling: Coupling, ratio: f64, is_whole: bool) -> Model {
     model.set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &m)).unwrap();
     if coupling == Coupling::Complex {
         model
-            .set_matrix(MatrixKind::Stiffness, &MatrixView::dense_complex(n, &k))
+            .set_matrix(
+                MatrixKind::Stiffness,
+                &MatrixView::dense_complex(n, &k).part(Part::Symmetric),
+            )
             .unwrap();
     } else {
         let real: Vec<f64> = k.iter().map(|z| z.re).collect();

@@ -238,9 +238,23 @@ impl DynamicStiffness {
     /// The current factors, if they solve many right sides side by side.
     pub(crate) fn slender(&mut self) -> Option<&mut SlenderLu> {
         match &mut self.plain {
-            Some(plain) if self.tuned_at.is_none() && plain.modal.is_none() => plain.factor.slender(),
+            Some(plain) if self.tuned_at.is_none() => plain.factor.slender(),
             _ => None,
         }
+    }
+
+    /// The term of low rank beside the current factors, with the parts of the matrix; `None` without one.
+    pub(crate) fn term(&mut self) -> Option<(&mut LowRankTerm, Sides<'_>)> {
+        let plain = self.plain.as_mut()?;
+        let (Some(directions), Some(modal)) = (&plain.current.1, &mut plain.modal) else {
+            return None;
+        };
+        let sides = Sides {
+            factor: &mut plain.factor,
+            matrix: &plain.z[plain.current.0],
+            directions: &directions[..],
+        };
+        Some((modal, sides))
     }
 
     /// Solves with the current factors.

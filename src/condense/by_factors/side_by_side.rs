@@ -59,6 +59,9 @@ impl Workspace {
             self.along = try_vec(outputs, Complex64::ZERO, CONTEXT)?;
         }
         let moved = if of_response { &self.products[..n] } else { &[] };
+        if dynamic.term().is_some_and(|(term, _)| term.loses_digits()) {
+            return Ok(false);
+        }
         let Some(slender) = dynamic.slender() else {
             return Ok(false);
         };
@@ -69,6 +72,16 @@ impl Workspace {
             (moved, &mut self.along),
             interrupt,
         )?;
+        if let Some((term, mut sides)) = dynamic.term() {
+            term.add_to_flexibility(
+                &mut sides,
+                port,
+                &mut self.table.value,
+                moved,
+                &mut self.along,
+                interrupt,
+            )?;
+        }
         let excited = self
             .columns
             .iter()

@@ -11,6 +11,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::dense::complex_products;
 use crate::linalg::factors::factor::Factor;
 use crate::linalg::factors::lu::Lu;
+use crate::linalg::factors::slender_lu::Entries;
 use crate::linalg::iterative::block_krylov::SparseVector;
 use crate::linalg::sparse_storage::sparse::Csc;
 use num_complex::Complex64;
@@ -33,7 +34,8 @@ const STEPS_WITH_TERM: usize = 6;
 pub struct LowRankTerm {
     n: usize,
     factor: Complex64,
-    /// W, column after column.
+    /// L and W, column after column.
+    columns: Vec<Complex64>,
     solved: Vec<Complex64>,
     /// Z₀⁻¹L, and 1 + c Lᴴ Z₀⁻¹L with its inverse.
     undamped: Vec<Complex64>,
@@ -65,6 +67,7 @@ impl LowRankTerm {
         Ok(Self {
             n,
             factor: Complex64::ZERO,
+            columns: zeros(n.saturating_mul(most))?,
             solved: zeros(n.saturating_mul(most))?,
             undamped: zeros(n.saturating_mul(most))?,
             small: Lu::new(most, most)?,
@@ -83,23 +86,25 @@ impl LowRankTerm {
     pub fn renew(&mut self, c: Complex64, sides: &mut Sides<'_>, interrupt: &Interrupt<'_>) -> Result<()> {
         let (n, count) = (self.n, sides.directions.len());
         (self.factor, self.loses_digits) = (c, false);
-        let (columns, small) = (&mut self.undamped[..n * count], count * count);
+        let (columns, undamped, small) = (
+            &mut self.columns[..n * count],
+            &mut self.undamped[..n * count],
+            count * count,
+        );
         columns.fill(Complex64::ZERO);
         for (column, direction) in columns.chunks_exact_mut(n).zip(sides.directions) {
             for &(p, z) in direction {
                 column[p] = z;
             }
         }
-        sides.factor.solve_side_by_side(columns, interrupt)?;
+        undamped.copy_from_slice(columns);
+        sides.factor.solve_side_by_side(undamped, interrupt)?;
         self.small.set_order(count);
-        for (j, (column, to)) in columns
-            .chunks_exact(n)
-            .zip(self.small.matrix().chunks_exact_mut(count.max(1)))
-            .enumerate()
-        {
-            for (i, (to, direction)) in to.iter_mut().zip(sides.directions).enumerate() {
-                *to = f64::from(u8::from(i == j)) + c * along(direction, column);
-            }
+        let matrix = self.small.matrix();
+        interrupt.check_before((8 * n * small) as u64)?;
+        complex_products::multiply_adjoint(columns, undamped, matrix, n);
+        for (at, z) in matrix.iter_mut().enumerate() {
+            *z = self.factor * *z + f64::from(u8::from(at % (count + 1) == 0));
         }
         self.small.factor(interrupt)?;
         let inverse = &mut self.inverse[..small];
@@ -110,8 +115,54 @@ impl LowRankTerm {
         self.small.solve_columns(inverse, false, interrupt)?;
         let solved = &mut self.solved[..n * count];
         interrupt.check_before((8 * n * small) as u64)?;
-        complex_products::multiply(columns, inverse, solved, n);
-        self.loses_digits = largest(columns) > LOSES_DIGITS * largest(solved);
+        complex_products::multiply(undamped, inverse, solved, n);
+        self.loses_digits = largest(undamped) > LOSES_DIGITS * largest(solved);
+        Ok(())
+    }
+
+    /// Whether solutions by Z₀ are so much larger than those by Z that residuals are needed.
+    #[must_use]
+    pub fn loses_digits(&self) -> bool {
+        self.loses_digits
+    }
+
+    /// Takes a table R Z₀⁻¹ Rᴴ between ports R, column after column, to R Z⁻¹ Rᴴ, and the `products` qᵀ Z₀⁻¹ Rᴴ of a `vector` q to
+    /// qᵀ Z⁻¹ Rᴴ, unless that is empty.
+    ///
+    /// # Errors
+    /// `Singular`, `OutOfMemory`; `StoppedByCaller`.
+    pub fn add_to_flexibility<'p>(
+        &mut self,
+        sides: &mut Sides<'_>,
+        port: impl Fn(usize) -> Entries<'p>,
+        table: &mut [Complex64],
+        vector: &[Complex64],
+        products: &mut [Complex64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let n = self.n;
+        let count = table.len().isqrt();
+        let mut adjoint = core::mem::take(&mut self.load);
+        for k in 0..sides.directions.len() {
+            // Lᴴ Z₀⁻¹ Rᴴ by Z₀⁻ᵀ conj(L).
+            for (to, z) in adjoint.iter_mut().zip(&self.columns[k * n..(k + 1) * n]) {
+                *to = z.conj();
+            }
+            sides.factor.solve(&mut adjoint, true, interrupt)?;
+            let solved = &self.solved[k * n..(k + 1) * n];
+            let by_vector = vector.iter().zip(solved).map(|(q, w)| q * w).sum::<Complex64>();
+            for (j, column) in table.chunks_exact_mut(count).enumerate() {
+                let seen = port(j).iter().map(|&(p, a)| a.conj() * adjoint[p]).sum::<Complex64>();
+                let share = self.factor * seen;
+                for (i, to) in column.iter_mut().enumerate() {
+                    *to -= share * port(i).iter().map(|&(p, a)| a * solved[p]).sum::<Complex64>();
+                }
+                if !vector.is_empty() {
+                    products[j] -= share * by_vector;
+                }
+            }
+        }
+        self.load = adjoint;
         Ok(())
     }
 

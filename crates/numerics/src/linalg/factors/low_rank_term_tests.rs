@@ -47,7 +47,7 @@ impl Chain {
 }
 
 /// Largest difference from dense factors, relative to the motion and to the rounding ε‖Z‖‖Z⁻¹‖ of any solution.
-fn departure(chain: &Chain, (count, ratio): (usize, f64), transposed: bool) -> f64 {
+fn departure(chain: &Chain, count: usize, ratio: f64, transposed: bool) -> f64 {
     let none = Interrupt::none();
     let (n, z, directions) = (chain.n, chain.matrix(), chain.directions(count, ratio));
     let c = Complex64::new(0.0, chain.nu);
@@ -102,9 +102,9 @@ fn solutions_are_those_of_dense_factors() {
                         chain.nu = chain.omega(1);
                     }
                     let transposed = n != 700 && (n != 1000 || coupling > 0.0);
-                    let off = departure(&chain, (count, ratio), transposed);
+                    let off = departure(&chain, count, ratio, transposed);
                     let plain = if n < 500 {
-                        departure(&chain, (count, ratio), false)
+                        departure(&chain, count, ratio, false)
                     } else {
                         off
                     };
