@@ -229,19 +229,18 @@ fn estimate(problem: &Quadratic<'_>, hermitian: &Csc, count: usize, interrupt: &
                 let held = |shape: &[Complex64]| {
                     quadratic(hermitian, shape).abs() > QUADRATIC_ROUNDING * terms(hermitian, shape)
                 };
-                let (mut highest, mut rigid) = (0.0_f64, 0);
+                let (mut highest, mut modes) = (0.0_f64, 0);
                 for (value, shape) in pairs.values.iter().zip(pairs.vectors.column_iter()) {
                     interrupt.check()?;
-                    if held(shape.as_slice()) {
+                    if modes < count && held(shape.as_slice()) {
                         highest = highest.max(*value);
-                    } else {
-                        rigid += 1;
+                        modes += 1;
                     }
                 }
-                if highest > 0.0 && wanted >= count + rigid {
+                if highest > 0.0 && (modes == count || wanted > count) {
                     return Ok(highest.sqrt());
                 }
-                wanted = count + rigid.max(RIGID_MODES);
+                wanted = count + RIGID_MODES;
             }
             Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => return Err(e),
             Err(_) => break,
