@@ -1,7 +1,7 @@
 //! The quadratic eigenproblem (λ²M + λC + K) x = 0 of a damped structure, and which of its eigenvalues are modes.
 
 use crate::error::{Result, fail, try_push, try_vec};
-use crate::linalg::exact_sums::quadratic::{ComplexSum, QUADRATIC_ROUNDING, product, quadratic, terms};
+use crate::linalg::exact_sums::quadratic::{ComplexSum, QUADRATIC_ROUNDING, form, product, quadratic, terms};
 use crate::linalg::inner;
 use crate::linalg::iterative::block_krylov::SparseVector;
 use crate::linalg::sparse_storage::held_rows::MovingRows;
@@ -11,6 +11,10 @@ use num_complex::Complex64;
 /// Imaginary part over the modulus below which an eigenvalue is no vibration: the root of rounding splits double ones.
 /// Kind: rounding.
 pub const QUADRATIC_PROBLEM_REAL: f64 = 1e-7;
+
+/// Imaginary part over the modulus below which a motion that nothing holds may be no vibration.
+/// Kind: rounding.
+const NEARLY_REAL: f64 = 1e-3;
 
 /// Relative distance of eigenvalues, and the square of the sine between their vectors, below which two are one.
 /// Kind: rounding.
@@ -79,6 +83,11 @@ impl Quadratic<'_> {
     /// The eigenvalue, if it belongs to a mode: it oscillates, or grows and is then real. `None` for a motion that is
     /// rigid or damped beyond vibration.
     pub fn as_mode(&self, mut eigenvalue: Complex64, shape: &[Complex64]) -> Option<Complex64> {
+        if eigenvalue.im.abs() < NEARLY_REAL * eigenvalue.norm()
+            && let Some(rate) = self.unheld_rate(shape)
+        {
+            eigenvalue = rate.into();
+        }
         if eigenvalue.im > QUADRATIC_PROBLEM_REAL * eigenvalue.norm() {
             return (!self.is_rigid(eigenvalue, shape)).then_some(eigenvalue);
         }
@@ -87,6 +96,17 @@ impl Quadratic<'_> {
         }
         eigenvalue.im = 0.0;
         self.grows(eigenvalue.re, shape).then_some(eigenvalue)
+    }
+
+    /// The eigenvalue −xᴴCx/xᴴMx of a motion that nothing holds, where it is real. Several such motions have it in common, which rounding
+    /// splits into pairs.
+    fn unheld_rate(&self, x: &[Complex64]) -> Option<f64> {
+        if quadratic(self.stiffness, x).abs() > QUADRATIC_ROUNDING * terms(self.stiffness, x) {
+            return None;
+        }
+        let force = form(self.damping, &self.damping.values, x);
+        let is_real = force.im.abs() <= QUADRATIC_PROBLEM_REAL * force.norm();
+        is_real.then(|| -force.re / quadratic(self.mass, x))
     }
 
     /// Whether a motion with a real eigenvalue λ > 0 is more than a rigid motion with rounding, by xᴴ(K + λC)x, which
