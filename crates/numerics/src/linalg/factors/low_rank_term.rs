@@ -6,7 +6,7 @@
 //! Next to a resonance of Z₀, which lacks that damping, solutions by Z₀ are far larger than those by Z and lose as many digits, which
 //! steps with the residual of Z bring back.
 
-use crate::error::{Result, try_vec};
+use crate::error::{Result, Status, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::complex_products;
 use crate::linalg::factors::factor::Factor;
@@ -21,6 +21,10 @@ const CONTEXT: &str = "a term of low rank";
 /// Ratio of solutions by Z₀ and by Z beyond which residuals are worth their time.
 /// Kind: rounding.
 const LOSES_DIGITS: f64 = 10.0;
+
+/// The same ratio beyond which Z₀ is singular, so that no step would converge.
+/// Kind: rounding.
+const NEARLY_SINGULAR: f64 = 1e7;
 
 /// Relative change by a step beyond which another one follows: each leaves the change of the last as a share.
 /// Kind: rounding.
@@ -79,11 +83,37 @@ impl LowRankTerm {
         })
     }
 
-    /// Prepares solutions with the term c L Lᴴ beside new factors.
+    /// Prepares solutions with the term c L Lᴴ beside new factors. Where Z₀ is singular but for rounding, its factors are made again with a
+    /// damping of all motions that is small beside the term: steps by residuals remove it.
     ///
     /// # Errors
-    /// `Singular`; `StoppedByCaller`.
+    /// `Singular`, `OutOfMemory`; `StoppedByCaller`.
     pub fn renew(&mut self, c: Complex64, sides: &mut Sides<'_>, interrupt: &Interrupt<'_>) -> Result<()> {
+        let count = self.n * sides.directions.len();
+        let loads = |term: &Self| largest(&term.columns[..count]);
+        let added = match self.prepare(c, sides, interrupt) {
+            Ok(()) => {
+                let (undamped, solved) = (largest(&self.undamped[..count]), largest(&self.solved[..count]));
+                if undamped <= NEARLY_SINGULAR * solved {
+                    return Ok(());
+                }
+                loads(self) / solved
+            }
+            Err(e) if e.status == Status::Singular => c.norm() * loads(self).powi(2),
+            Err(e) => return Err(e),
+        };
+        let mut matrix = sides.matrix.try_clone()?;
+        for j in 0..self.n {
+            matrix.add_stored(j, j, Complex64::new(0.0, f64::EPSILON.sqrt() * added));
+        }
+        sides.factor.factor(&matrix, interrupt)?;
+        self.prepare(c, sides, interrupt)?;
+        self.loses_digits = true;
+        Ok(())
+    }
+
+    /// W and what it takes, with the current factors.
+    fn prepare(&mut self, c: Complex64, sides: &mut Sides<'_>, interrupt: &Interrupt<'_>) -> Result<()> {
         let (n, count) = (self.n, sides.directions.len());
         (self.factor, self.loses_digits) = (c, false);
         let (columns, undamped, small) = (
