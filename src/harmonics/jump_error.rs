@@ -16,8 +16,8 @@
 //! Where the exchanged motion is the force on a mass, the law has all harmonics of the jumps, and its forces are late by g/h_r. Rings that
 //! are left when the next slip begins move its end. They are cut at the limit, ever lower as α x rises, so that this slip begins with
 //! a momentum between 0 and 2π α x'/h_r², whatever the ring was, and its jump comes late by that over the jump. Jumps are counted as
-//! late by the largest such time, or a share of 1/h_r if that is more, whatever the number of harmonics, and by the time by which the motion
-//! of the slider does not repeat itself.
+//! late by the largest such time, or a share of 1/h_r if that is more, whatever the number of harmonics, and by the time by which the
+//! motion of the slider does not repeat itself.
 
 use crate::aft::late_jumps;
 use crate::condense::Condensed;
