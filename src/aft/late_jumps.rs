@@ -12,23 +12,18 @@ use crate::interrupt::Interrupt;
 
 const CONTEXT: &str = "the jumps of a contact force";
 
-/// The jumps of the force of a law.
-pub struct LateJumps {
-    /// Packed change of the force with a delay of all jumps.
-    pub by_delay: Vec<f64>,
-    /// Time by which the motion of the slider does not repeat itself after half a turn: its jumps are as doubtful.
-    pub apart: f64,
-}
-
-/// The jumps of the force of `law` at a packed motion and an angular frequency; `None` where the law has none, or the slider sticks.
+/// Packed change of the force of `law`, at a packed motion and an angular frequency, where its jumps come late; `None` where the law has
+/// none, or the slider sticks. Each is late by `late` of the rise of the force before the slip, over the jump, which is 0 where no stick is
+/// before, and by the time by which the motion of the slider does not repeat itself after half a turn.
 ///
 /// # Errors
 /// `OutOfMemory`, `StoppedByCaller`.
 pub fn late_jumps(
     PackedMotion { set, motion, omega }: PackedMotion<'_>,
     law: &dyn Law,
+    late: impl Fn(f64) -> f64,
     interrupt: &Interrupt<'_>,
-) -> Result<Option<LateJumps>> {
+) -> Result<Option<Vec<f64>>> {
     let Form::PiecewiseLinear(law) = law.form() else {
         return Ok(None);
     };
@@ -53,11 +48,22 @@ pub fn late_jumps(
         // Half a turn later the mirror image follows.
         let (next, sign) = pieces.get(k + 1).map_or((&pieces[0], -1.0), |next| (next, 1.0));
         let after = next.slope * jet(set, motion, piece.end).x + sign * next.offset;
-        impulse(set, piece.end, piece.offset - after, &mut one);
+        let jump = piece.offset - after;
+        let before = if k > 0 {
+            &pieces[k - 1]
+        } else {
+            &pieces[pieces.len() - 1]
+        };
+        let rise = (before.slope * jet(set, motion, piece.start).dx).abs() / jump.abs();
+        if !rise.is_finite() {
+            continue; // no jump
+        }
+        impulse(set, piece.end, jump, &mut one);
+        let late = late(rise) + apart;
         for (sum, one) in sum.iter_mut().zip(&one) {
-            *sum += one;
+            *sum += late * one;
         }
         slips = true;
     }
-    Ok(slips.then_some(LateJumps { by_delay: sum, apart }))
+    Ok(slips.then_some(sum))
 }

@@ -14,8 +14,10 @@
 //! beyond it the harmonics of the force fall by two powers more, and their sum with H as H^-3.
 //!
 //! Where the exchanged motion is the force on a mass, the law has all harmonics of the jumps, and its forces are late by g/h_r. Rings that
-//! are left when the next slip begins move its end: all jumps are counted as late by a share of 1/h_r, whatever the number of harmonics,
-//! and by the time by which the motion of the slider does not repeat itself.
+//! are left when the next slip begins move its end. They are cut at the limit, ever lower as α x rises, so that this slip begins with
+//! a momentum between 0 and 2π α x'/h_r², whatever the ring was, and its jump comes late by that over the jump. Jumps are counted as
+//! late by the largest such time, or a share of 1/h_r if that is more, whatever the number of harmonics, and by the time by which the
+//! motion of the slider does not repeat itself.
 
 use crate::aft::late_jumps;
 use crate::condense::Condensed;
@@ -27,6 +29,7 @@ use crate::interrupt::Interrupt;
 use crate::problem::Problem;
 use crate::problem::harmonic_balance::HarmonicBalance;
 use crate::problem::slip_forces;
+use std::f64::consts::TAU;
 
 /// Error of a point over its change with twice the harmonics, where it falls as 1/H.
 /// Kind: tuned; measured on: not recorded.
@@ -89,11 +92,12 @@ fn lateness(
         }
         let (late, jumps) = if exchange.mass_at.is_some() {
             let motion = &at[c * m..(c + 1) * m];
-            let Some(jumps) = late_jumps(PackedMotion { set, motion, omega }, &*law.law, interrupt)? else {
+            let ring = set.base() as f64 / of_ring;
+            let late = |rise: f64| ring * (TAU * rise * ring).max(OF_RING_OF_MASS);
+            let Some(jumps) = late_jumps(PackedMotion { set, motion, omega }, &*law.law, late, interrupt)? else {
                 continue;
             };
-            let late = OF_RING_OF_MASS * set.base() as f64 / of_ring + jumps.apart;
-            (late, Some(jumps.by_delay))
+            (1.0, Some(jumps))
         } else {
             let share = (BEYOND_RING * of_ring / highest).min(1.0).powi(3);
             (OF_RING * share / of_ring, None)

@@ -1,8 +1,8 @@
-//! Near-rigid contacts that stick, with a tolerance: a linear problem.
+//! Near-rigid contacts that stick, which is a linear problem, and those that hardly slip, with a tolerance.
 
 use crate::common::models::{chain_stiffness, unit_chain};
 use crate::common::{all_harmonics, at_dof, sweep};
-use hbvib::{Model, SolverOptions, Status};
+use hbvib::{Hooks, Model, SolverOptions, Status, VerifyOptions, verify};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 
@@ -68,4 +68,33 @@ fn a_near_rigid_contact_that_sticks_is_linear() {
         }
     }
     println!("worst {worst:.1e}");
+}
+
+/// One mass at the onset of slip and beyond: an estimate has the error of the contact's own motion, and a point that misses the tolerance
+/// is said to.
+#[test]
+fn a_mass_that_hardly_slips_knows_its_error() {
+    for kt in [1.2e4, 2e4, 5e4, 1e6] {
+        for share in [0.99, 0.97, 0.95, 0.9, 0.5] {
+            for (start, stop) in [(1.02, 1.02), (0.98, 1.05)] {
+                let force = 0.2;
+                let model = unit_chain(1)
+                    .rayleigh(0.02, 0.0)
+                    .slider(0, kt, 1.0, share * force)
+                    .force(0, 1, force)
+                    .build();
+                let branch = sweep(&model, &SolverOptions::default(), start, stop, &[]);
+                let name = format!("kt {kt:e}, limit {share}, {start} to {stop}");
+                let last = branch.points() - 1;
+                let found = verify(&model, &branch, last, &VerifyOptions::default(), &mut Hooks::default()).unwrap();
+                let (error, estimate) = (found.response_error, branch.error_estimate_at(last).unwrap());
+                println!(
+                    "{name}: H {}, error {error:.1e}, estimate {estimate:.1e}",
+                    branch.harmonics()
+                );
+                assert!(error <= 1e-5 + 1.5 * estimate, "{name}: {error:e}, {estimate:e}");
+                assert!(estimate > 1e-3 || error <= 1e-3, "{name}: {error:e}");
+            }
+        }
+    }
 }
