@@ -48,7 +48,7 @@ struct Sampling {
 
 impl Sampling {
     /// The sampling that a law has by itself or by request.
-    fn of_law((requested, refinement): (usize, usize)) -> Self {
+    fn of_law(requested: usize, refinement: usize) -> Self {
         Self {
             requested,
             refinement,
@@ -94,7 +94,7 @@ impl Evaluator {
         samples: (usize, usize),
         laws: impl Iterator<Item = &'l dyn Law>,
     ) -> Result<Self> {
-        Self::with(set, (Sampling::of_law(samples), true), laws)
+        Self::with(set, (Sampling::of_law(samples.0, samples.1), true), laws)
     }
 
     /// An evaluator as `new` makes it, with `refinement` times as many samples for laws without exact events where
@@ -107,7 +107,7 @@ impl Evaluator {
         samples: (usize, usize),
         laws: impl Iterator<Item = &'l dyn Law>,
     ) -> Result<Self> {
-        Self::with(set, (Sampling::of_law(samples), false), laws)
+        Self::with(set, (Sampling::of_law(samples.0, samples.1), false), laws)
     }
 
     /// An evaluator with half as many samples, or twice as many where half are too few: the reference for the
@@ -122,7 +122,7 @@ impl Evaluator {
     ) -> Result<Self> {
         let sampling = Sampling {
             other: true,
-            ..Sampling::of_law(samples)
+            ..Sampling::of_law(samples.0, samples.1)
         };
         Self::with(set, (sampling, false), laws)
     }
@@ -282,7 +282,7 @@ impl Evaluator {
     /// caller requests `requested` samples or, if 0, `refinement` times the law's own number; 0 where the law is
     /// exact.
     pub fn samples_of(law: &dyn Law, highest: usize, samples: (usize, usize)) -> usize {
-        let sampling = Sampling::of_law(samples);
+        let sampling = Sampling::of_law(samples.0, samples.1);
         let requested = sampling.requested;
         match law.form() {
             Form::PiecewiseLinear(_) => requested,

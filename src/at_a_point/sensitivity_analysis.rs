@@ -13,7 +13,7 @@ const CONTEXT: &str = "the sensitivities";
 
 /// Relative change of the amplitude over that of the frequency below which a peak is smooth and found to rounding.
 /// Kind: rounding.
-const FLAT: f64 = 1e-6;
+const SMOOTH_PEAK: f64 = 1e-6;
 
 /// Result at a stored point that is differentiated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -171,7 +171,7 @@ pub fn sensitivity_with(
     }
     let moves = forced.as_mut().zip(peak_amplitude(branch, of, point));
     if let Some((at, amplitude)) = moves.filter(|_| !is_frequency(of))
-        && (omega * adjoint.by_omega).abs() > FLAT * amplitude
+        && (omega * adjoint.by_omega).abs() > SMOOTH_PEAK * amplitude
     {
         // A corner goes along the slope of its side: dA*/dp = ∂A/∂p + ∂A/∂ω dω*/dp.
         let mut reasons = try_copy(&found.reasons, CONTEXT)?;

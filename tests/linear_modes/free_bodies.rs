@@ -130,8 +130,9 @@ fn the_first_mode_of_a_free_beam_is_its_first_bending_however_few_are_requested(
                 let half = 0.5 * (alpha + beta * own * own);
                 let right = Complex64::new(-half, (own * own - half * half).sqrt());
                 let off = (found.eigenvalue[0] - right).norm() / right.norm();
+                // The error of the mesh falls by the fourth power of its elements.
                 assert!(
-                    off < 1e-6,
+                    off < 1e-6 + 0.5 * (elements as f64).powi(-4),
                     "{elements} elements, {alpha} {beta}, {count}: {}",
                     found.eigenvalue[0]
                 );

@@ -42,7 +42,7 @@ pub(crate) fn all_undamped(stiffness: &Csc, mass: &Csc, interrupt: &Interrupt<'_
     let (least, largest) = sizes.fold((f64::INFINITY, 0.0_f64), |(least, most), x| (least.min(x), most.max(x)));
     if largest > GRADED * least {
         for shift in [Some(0.0), softest(stiffness, mass)].into_iter().flatten() {
-            if replace_soft(&mut pairs, (stiffness, mass), (shift, largest), interrupt)? {
+            if replace_soft(&mut pairs, stiffness, mass, shift, interrupt)? {
                 break;
             }
         }
@@ -59,13 +59,9 @@ fn softest(stiffness: &Csc, mass: &Csc) -> Option<f64> {
 }
 
 /// Replaces the modes that the pencil turned round about −`shift` has with the smaller error; `false` where it has no solution.
-fn replace_soft(
-    pairs: &mut Pairs,
-    (stiffness, mass): (&Csc, &Csc),
-    (shift, largest): (f64, f64),
-    interrupt: &Interrupt<'_>,
-) -> Result<bool> {
+fn replace_soft(pairs: &mut Pairs, stiffness: &Csc, mass: &Csc, shift: f64, interrupt: &Interrupt<'_>) -> Result<bool> {
     let n = stiffness.rows;
+    let largest = pairs.values.last().copied().unwrap_or(0.0);
     let terms = [
         (Complex64::ONE, stiffness, Form::Plain),
         (shift.into(), mass, Form::Plain),
