@@ -8,6 +8,7 @@ use crate::sensitivity::{
     Adjoint, ForcedPoint, ModePointAdjoint, ModeQuantity, Parameter, Reason, SampledModel, TotalDerivative,
     contact_at_onset, peak_shift,
 };
+use std::borrow::Cow;
 
 const CONTEXT: &str = "the sensitivities";
 
@@ -98,16 +99,8 @@ pub fn sensitivity_with(
             .map_err(|e| e.at(format_args!("parameter {i}")))?;
     }
     interrupt.phase(Phase::Results, 0.0)?;
-    let wave;
-    let model = match branch.mode_data() {
-        Some(data) if data.info.engine_order != model.structure().engine_order() => {
-            let mut other = model.try_clone()?;
-            other.set_wave(data.info.engine_order);
-            wave = other;
-            &wave
-        }
-        _ => model,
-    };
+    let of_wave = of_wave(model, branch)?;
+    let model = &*of_wave;
     let at_frequency = model.at_frequency(omega)?;
     let solution = SampledModel::at(branch, point);
     let absent = |reason| -> Result<Sensitivities> {
@@ -169,23 +162,42 @@ pub fn sensitivity_with(
         }
         _ => derivatives(&adjoint, &mut found.values, &mut found.reasons)?,
     }
-    let moves = forced.as_mut().zip(peak_amplitude(branch, of, point));
-    if let Some((at, amplitude)) = moves.filter(|_| !is_frequency(of))
+    if let Some((at, amplitude)) = forced.as_mut().zip(peak_amplitude(branch, of, point))
+        && !is_frequency(of)
         && (omega * adjoint.by_omega).abs() > SMOOTH_PEAK * amplitude
     {
-        // A corner goes along the slope of its side: dA*/dp = ∂A/∂p + ∂A/∂ω dω*/dp.
         let mut reasons = try_copy(&found.reasons, CONTEXT)?;
         let shift = peak_shift(at, motion, omega, amplitude, parameters.len(), |adjoint, values| {
             derivatives(adjoint, values, &mut reasons)
         })?;
-        for ((value, reason), shift) in found.values.iter_mut().zip(&mut found.reasons).zip(shift) {
-            *value += adjoint.by_omega * shift;
+        found.go_along(adjoint.by_omega, &shift);
+    }
+    Ok(found)
+}
+
+/// The model in the wave of a nonlinear mode.
+fn of_wave<'m>(model: &'m Model, branch: &Branch) -> Result<Cow<'m, Model>> {
+    match branch.mode_data() {
+        Some(data) if data.info.engine_order != model.structure().engine_order() => {
+            let mut other = model.try_clone()?;
+            other.set_wave(data.info.engine_order);
+            Ok(Cow::Owned(other))
+        }
+        _ => Ok(Cow::Borrowed(model)),
+    }
+}
+
+impl Sensitivities {
+    /// Makes derivatives at a fixed frequency those of a corner, which goes along the slope of its side by the `shift` of its frequency:
+    /// dA*/dp = ∂A/∂p + ∂A/∂ω dω*/dp.
+    fn go_along(&mut self, slope: f64, shift: &[f64]) {
+        for ((value, reason), shift) in self.values.iter_mut().zip(&mut self.reasons).zip(shift) {
+            *value += slope * shift;
             if *reason == Reason::Exists && value.is_nan() {
                 *reason = Reason::Fold;
             }
         }
     }
-    Ok(found)
 }
 
 /// Whether a result is the frequency of a peak.

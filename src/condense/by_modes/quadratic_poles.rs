@@ -17,7 +17,7 @@
 
 use crate::condense::blocks::harmonic_block::{Artificial, HarmonicBlock};
 use crate::condense::by_modes::wave_poles::{Key, WavePoles};
-use crate::condense::on_a_basis::basis_outlook::are_all_poles_quicker;
+use crate::condense::on_a_basis::basis_outlook::{MOST_POLE_WORK, are_all_poles_quicker};
 use crate::condense::{Condensed, FlexibilityWay};
 use crate::error::{Result, Status, try_copy, try_vec};
 use crate::interrupt::Interrupt;
@@ -32,11 +32,6 @@ use num_complex::Complex64;
 use std::sync::Arc;
 
 const CONTEXT: &str = "the poles of the structure";
-
-/// Work, as order³ of a real matrix, up to which poles are computed: the QR iteration takes less than a second, in which nothing
-/// can stop it.
-/// Kind: cap.
-const MOST_POLE_WORK: f64 = 900.0 * 900.0 * 900.0;
 
 /// Work of a complex matrix over that of a real one.
 /// Kind: tuned; measured on: not recorded.

@@ -29,6 +29,11 @@ const OF_ENTRIES: f64 = 6.0;
 const WORK_OF_ALL_MODES: f64 = 0.2;
 const WORK_OF_ALL_POLES: f64 = 2.0;
 
+/// Work, as order³ of a real matrix, up to which poles are computed: the QR iteration takes less than a second, in which nothing
+/// can stop it.
+/// Kind: cap.
+pub(crate) const MOST_POLE_WORK: f64 = 900.0 * 900.0 * 900.0;
+
 /// Columns of contacts whose table takes as long as its factors; and work of a sum over modes over its multiplications, in the same.
 /// Kind: tuned; measured on: chains of 300 to 620 with 1, 8, 30 and 100 contacts and 1 to 31 harmonics.
 const COLUMNS_OF_FACTORS: f64 = 20.0;
@@ -69,6 +74,18 @@ pub(crate) fn is_worth_its_columns(outlook: Outlook, factors: &Factors, below: B
     let of_one = of_factors(below.entries, n);
     let times = if factors.along_range { ALONG_RANGE } else { AT_ONE };
     OF_COLUMNS * (columns as f64).powi(3) <= times * factors.harmonics as f64 * of_one
+}
+
+/// The most columns of a basis under general damping that take no longer than factors whose triangle has `entries` entries: a frequency
+/// takes a sum over the poles of the basis, once computed, where these are few enough, or dense factors.
+pub(crate) fn paying_columns(factors: &Factors, entries: usize, n: usize) -> usize {
+    let of_one = of_factors(entries, n);
+    let times = if factors.along_range { ALONG_RANGE } else { AT_ONE };
+    let of_poles = times * factors.harmonics as f64 * of_one / WORK_OF_ALL_POLES;
+    let by_poles = 0.5 * of_poles.min(MOST_POLE_WORK).cbrt();
+    // A dense triangle of order r has r²/2 entries.
+    let by_dense_factors = (4.0 * of_one).cbrt();
+    by_poles.max(by_dense_factors) as usize
 }
 
 /// Work of complex LU factors of order n whose triangle has `entries` entries.

@@ -2,7 +2,7 @@
 
 use crate::condense::blocks::memory_limit::within;
 use crate::condense::by_modes::few_directions::FewDirections;
-use crate::condense::on_a_basis::basis_outlook::{Outlook, is_worth_its_columns};
+use crate::condense::on_a_basis::basis_outlook::{Outlook, is_worth_its_columns, paying_columns};
 use crate::condense::on_a_basis::certificate::Certificate;
 use crate::condense::on_a_basis::residual_directions::residual_directions;
 use crate::condense::on_a_basis::wave_matrices::{Assembled, Damping, WaveMatrices};
@@ -141,7 +141,8 @@ fn build<T: Entry>(
     };
     let mut residuals = Vec::new();
     let (mut before, mut idle) = (f64::INFINITY, 0);
-    let mut is_worth = None;
+    // The most columns that are worth more blocks, once that is known.
+    let mut paying = None;
     loop {
         interrupt.part(Phase::Condensation, wave.pencil.order(), most)?;
         // The certificate uses the basis for the rows of the contacts.
@@ -153,19 +154,20 @@ fn build<T: Entry>(
             Err(_) => return fail!(Internal, "a basis in preparation is shared"),
         };
         let order = wave.pencil.order();
-        let full = order + krylov.next_columns() > most || krylov.next_columns() == 0;
+        let room = |paying: Option<usize>| most.min(paying.unwrap_or(most));
+        let full = order + krylov.next_columns() > room(paying) || krylov.next_columns() == 0;
         // Rounding is no reason for a larger basis.
         krylov.give_basis(back(wave.basis));
         let mut complete = found.basis <= limit || full;
-        if !complete && is_worth.is_none() {
+        if !complete && paying.is_none() {
             let outlook = Outlook {
                 inputs: wave.inputs.len(),
                 beside,
                 most,
             };
-            let worth = is_worth_more(&mut krylov, matrices, outlook, &prepared, interrupt)?;
-            is_worth = Some(worth);
-            complete = !worth;
+            let columns = worth_columns(&mut krylov, matrices, outlook, &prepared, interrupt)?;
+            paying = Some(columns);
+            complete = order + krylov.next_columns() > columns;
         }
         // Directions of residuals that have not helped twice, as at two frequencies, leave the choice to all candidates.
         idle = if found.basis > before / LEAST_GAIN { idle + 1 } else { 0 };
@@ -174,7 +176,7 @@ fn build<T: Entry>(
         }
         before = found.basis;
         // Where images and basis are the same space there is nothing to add.
-        if complete || !grown(&mut krylov, most, (&residuals, limit), interrupt)? {
+        if complete || !grown(&mut krylov, room(paying), (&residuals, limit), interrupt)? {
             wave.refused_up_to = if found.basis > limit { most } else { 0 };
             wave.pencil = exact_pencil(&mut krylov, &prepared, interrupt)?;
             let mut columns = krylov.take_basis();
@@ -189,17 +191,18 @@ fn build<T: Entry>(
     }
 }
 
-/// Whether more blocks are worth it, which one factorisation tells. It takes the memory of the factor of the basis, which is
-/// made again. `true` where the natural frequencies cannot be counted.
-fn is_worth_more<T: Entry>(
+/// The most columns with which more blocks are worth it, which one factorisation tells: none, any number, or those that pay under general
+/// damping, which extends a basis beyond what the natural frequencies tell. It takes the memory of the factor of the basis, which is
+/// made again. Any number where the natural frequencies cannot be counted.
+fn worth_columns<T: Entry>(
     krylov: &mut BlockKrylov<T>,
     matrices: &WaveMatrices<'_>,
     outlook: Outlook,
     prepared: &Prepared,
     interrupt: &Interrupt<'_>,
-) -> Result<bool> {
+) -> Result<usize> {
     let Some(factors) = &matrices.instead_of else {
-        return Ok(true);
+        return Ok(usize::MAX);
     };
     let below = {
         let shifted = krylov.shifted(-factors.highest * factors.highest, interrupt)?;
@@ -207,7 +210,14 @@ fn is_worth_more<T: Entry>(
     };
     let a = krylov.shifted(prepared.shift, interrupt)?;
     krylov.factor().make_again(&a, interrupt)?;
-    Ok(below.is_none_or(|below| is_worth_its_columns(outlook, factors, below, prepared.n)))
+    let Some(below) = below else {
+        return Ok(usize::MAX);
+    };
+    Ok(match &prepared.damping {
+        _ if !is_worth_its_columns(outlook, factors, below, prepared.n) => 0,
+        OfWave::General => paying_columns(factors, below.entries, prepared.n),
+        _ => usize::MAX,
+    })
 }
 
 /// Adds blocks until the basis has grown enough for another certificate; `false` where nothing is left to add. A

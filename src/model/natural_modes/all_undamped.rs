@@ -5,7 +5,7 @@
 //! ([`refined_modes`]). σ = 0 where K is positive definite, else the stiffness of the softest degree of freedom over its mass: motions
 //! that nothing holds have μ = 1/σ then. Each mode is taken from the pencil that has it with the smaller error.
 
-use crate::error::{Result, Status, check_memory, try_vec};
+use crate::error::{Result, Status, check_memory, try_push};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::eigen::{self, Pairs};
 use crate::linalg::exact_sums::quadratic::quadratic;
@@ -67,10 +67,10 @@ fn replace_soft(pairs: &mut Pairs, stiffness: &Csc, mass: &Csc, shift: f64, inte
         (shift.into(), mass, Form::Plain),
     ];
     let shifted = Csc::sum(n, &terms)?;
-    let mut masses = try_vec(shifted.values.len(), Complex64::ZERO, CONTEXT)?;
+    let mut masses = Vec::new();
     for j in 0..n {
-        for at in shifted.col_ptr[j]..shifted.col_ptr[j + 1] {
-            masses[at] = mass.get(shifted.row_idx[at], j);
+        for (i, _) in shifted.column(j) {
+            try_push(&mut masses, mass.get(i, j), CONTEXT)?;
         }
     }
     let turned = match refined_modes::modes(&shifted, &masses, interrupt) {
@@ -87,7 +87,8 @@ fn replace_soft(pairs: &mut Pairs, stiffness: &Csc, mass: &Csc, shift: f64, inte
     let mut count = 0;
     let mut last = f64::INFINITY;
     for &mu in turned.values.iter().rev().take(pairs.values.len()) {
-        if !soft(mu) && !(mu > 0.0 && last - mu <= ALL_UNDAMPED_TOGETHER * last) {
+        let is_beside = mu > 0.0 && last - mu <= ALL_UNDAMPED_TOGETHER * last;
+        if !(soft(mu) || is_beside) {
             break;
         }
         last = mu;
