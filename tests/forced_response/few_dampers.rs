@@ -1,7 +1,7 @@
 //! Damping of few directions beside αM + βK, dashpots and ratios of some modes: sums over modes, poles and bases respond as the factors of
 //! single frequencies do, on both sides of each size at which the way changes, at first, last and requested points.
 
-use crate::common::{at_dof, omega_range};
+use crate::common::{at_dof, models, omega_range};
 use crate::reduced_structures::{plate, point};
 use hbvib::internals::FlexibilityWay::Modes;
 use hbvib::{Flexibility, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, forced_response};
@@ -15,6 +15,13 @@ enum Damping {
     Modes,
     /// 0.02 K, a force along a velocity at 11 and one of 20 by that of 90, which is no product L Lᴴ.
     Coupled,
+    /// A dashpot of its own on each degree of freedom.
+    Everywhere,
+}
+
+/// A damping of the i-th degree of freedom that is no multiple of its mass or stiffness.
+fn dashpot(i: usize) -> f64 {
+    1e-3 * (1 + 7 * i % 11) as f64
 }
 
 fn damped(side: usize, damping: Damping) -> Model {
@@ -35,6 +42,7 @@ fn damped(side: usize, damping: Damping) -> Model {
             add(20, 90, 0.05);
             add(90, 20, 0.05);
         }
+        Damping::Everywhere => (0..n).for_each(|i| add(i, i, dashpot(i))),
         Damping::Modes => {
             let ratios: Vec<f64> = (0..12).map(|r| 0.01 + 0.002 * f64::from(r)).collect();
             model.set_modal_damping(&ratios).unwrap();
@@ -49,13 +57,26 @@ fn damped(side: usize, damping: Damping) -> Model {
 
 /// Compares the points of a sweep, with single frequencies by factors.
 fn compare(side: usize, damping: Damping, solver: &SolverOptions) {
-    let model = damped(side, damping);
-    let at = [0.163, 0.19];
+    compare_within(
+        &damped(side, damping),
+        [0.15, 0.163, 0.19, 0.2],
+        solver,
+        (side, damping),
+    );
+}
+
+/// Compares points as above, from the first to the last of four frequencies, with the others requested.
+fn compare_within(
+    model: &Model,
+    [low, at @ .., high]: [f64; 4],
+    solver: &SolverOptions,
+    (side, damping): (usize, Damping),
+) {
     let range = ForcedOptions {
         at: &at,
-        ..omega_range(0.15, 0.2)
+        ..omega_range(low, high)
     };
-    let branch = forced_response(&model, solver, &range, &mut Hooks::default()).unwrap();
+    let branch = forced_response(model, solver, &range, &mut Hooks::default()).unwrap();
     let reduction = branch.reduction();
     let limit = 1e-10 + reduction.certificate;
     let mut points = vec![0, branch.points() - 1];
@@ -66,7 +87,7 @@ fn compare(side: usize, damping: Damping, solver: &SolverOptions) {
     };
     for at in points {
         let omega = branch.omega_at(at).unwrap();
-        let (found, alone) = (branch.response_at(at).unwrap()[0], point(&model, &direct, omega));
+        let (found, alone) = (branch.response_at(at).unwrap()[0], point(model, &direct, omega));
         let alone = alone.response_at(0).unwrap()[0];
         assert!(
             (found - alone).norm() < limit * alone.norm(),
@@ -85,6 +106,26 @@ fn dampers_of_few_directions_respond_as_by_factors() {
         compare(10, damping, &fixed(3));
         compare(22, damping, &fixed(5));
         compare(26, damping, &fixed(1));
+    }
+}
+
+/// Poles, factors, and a basis that grows beyond what factors take: a chain of 1,100 masses needs hundreds of columns.
+#[test]
+fn a_dashpot_on_each_mass_responds_as_by_factors() {
+    for side in [10, 20, 22, 26] {
+        compare(side, Damping::Everywhere, &fixed(3));
+    }
+    for n in [450, 610, 1100] {
+        let mut c = vec![0.0; n * n];
+        (0..n).for_each(|i| c[i * n + i] = dashpot(i));
+        let lowest = std::f64::consts::PI / (n + 1) as f64;
+        let model = models::unit_chain(n)
+            .damping(&c)
+            .slider(200, 1.0, 0.9, 1.0)
+            .force(n / 3, 1, 0.1)
+            .build();
+        let frequencies = [0.8, 1.3, 2.0, 3.4].map(|factor| factor * lowest);
+        compare_within(&model, frequencies, &fixed(3), (n, Damping::Everywhere));
     }
 }
 
