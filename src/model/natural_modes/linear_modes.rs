@@ -16,7 +16,7 @@ use crate::model::Model;
 use crate::model::matrices::structure::MatrixKind;
 use crate::model::matrices::wave::Wave;
 use crate::model::natural_modes::all_undamped::all_undamped;
-use crate::model::natural_modes::quadratic_problem::{Quadratic, check_rounding};
+use crate::model::natural_modes::quadratic_problem::Quadratic;
 use crate::model::natural_modes::static_tangents::StaticTangents;
 use num_complex::Complex64;
 use std::borrow::Cow;
@@ -280,8 +280,6 @@ impl Pencil {
         for (value, shape) in pairs.values.iter_mut().zip(pairs.vectors.column_iter()) {
             interrupt.check()?;
             *value = self.quotient(shape.as_slice());
-            let forces = terms(&self.stiffness, shape.as_slice());
-            check_rounding("stiffness", forces, *value * quadratic(&self.mass, shape.as_slice()))?;
         }
         if self.weight.is_some() {
             for mut shape in pairs.vectors.column_iter_mut() {

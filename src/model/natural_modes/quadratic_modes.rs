@@ -8,13 +8,13 @@
 
 use crate::error::{Result, Status, check_memory, fail, try_copy, try_extend, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::exact_sums::quadratic::{ComplexSum, product, quadratic, terms};
+use crate::linalg::exact_sums::quadratic::{ComplexSum, product, quadratic};
 use crate::linalg::factors::factor::Factor;
 use crate::linalg::libraries::{DMatrix, Schur};
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::natural_modes::all_undamped::all_undamped;
 use crate::model::natural_modes::linear_modes::{ALL_MODES_UP_TO, finds_all};
-use crate::model::natural_modes::quadratic_problem::{Pair, QUADRATIC_PROBLEM_REAL, Quadratic, check_rounding, is_one};
+use crate::model::natural_modes::quadratic_problem::{Pair, QUADRATIC_PROBLEM_REAL, Quadratic, is_one};
 use crate::model::natural_modes::quadratic_search::lowest_by_search;
 use num_complex::Complex64;
 
@@ -90,11 +90,7 @@ impl Quadratic<'_> {
                 continue;
             };
             let mut shape = better.1;
-            let square = quadratic(self.mass, &shape);
-            let size = eigenvalue.norm();
-            check_rounding("stiffness", terms(self.stiffness, &shape), size * size * square)?;
-            check_rounding("damping", terms(self.damping, &shape), size * square)?;
-            let norm = square.sqrt();
+            let norm = quadratic(self.mass, &shape).sqrt();
             for x in &mut shape {
                 *x /= norm;
             }

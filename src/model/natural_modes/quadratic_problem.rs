@@ -1,6 +1,6 @@
 //! The quadratic eigenproblem (λ²M + λC + K) x = 0 of a damped structure, and which of its eigenvalues are modes.
 
-use crate::error::{Result, fail, try_push, try_vec};
+use crate::error::{Result, try_push, try_vec};
 use crate::linalg::exact_sums::quadratic::{ComplexSum, QUADRATIC_ROUNDING, form, product, quadratic, terms};
 use crate::linalg::inner;
 use crate::linalg::iterative::block_krylov::SparseVector;
@@ -162,32 +162,6 @@ impl Quadratic<'_> {
         self.mass.multiply_add(2.0 * eigenvalue, x, &mut y);
         Ok(y)
     }
-}
-
-/// Rounding of forces as stored, over those of a mode, from which little is known of it.
-/// Kind: rounding.
-const QUADRATIC_PROBLEM_LOST: f64 = 1e-2;
-/// Rounding as above, from which the mode is a motion that nothing holds.
-/// Kind: rounding.
-const QUADRATIC_PROBLEM_ALL_LOST: f64 = 0.5;
-
-/// Refuses a mode whose forces are lost in the rounding of a matrix as it is stored: those of springs beside a penalty. `terms` is the sum of
-/// the moduli of the terms of its energy, and `energy` what is left of them.
-///
-/// # Errors
-/// `NoConvergence`.
-pub fn check_rounding(matrix: &str, terms: f64, energy: f64) -> Result<()> {
-    // Half of the last digit of the entries on the diagonal, which have half of the terms beside a link.
-    let lost = 0.25 * f64::EPSILON * terms / energy.abs();
-    // A motion that nothing holds has rounding alone.
-    if lost > QUADRATIC_PROBLEM_LOST && lost < QUADRATIC_PROBLEM_ALL_LOST {
-        return fail!(
-            NoConvergence,
-            "rounding of the {matrix} as stored is {lost:.1e} of the forces of a mode: some entries are far above those of the structure, as \
-             a penalty's; make what they connect one degree of freedom"
-        );
-    }
-    Ok(())
 }
 
 /// Whether two pairs are the same mode.
