@@ -15,7 +15,7 @@ use num_complex::Complex64;
 
 /// Largest number of square matrices that [`eigen::generalised`] holds at a time.
 /// Kind: fixed.
-const ALL_UNDAMPED_COPIES: usize = 8;
+pub(super) const EIGEN_COPIES: usize = 8;
 
 /// Largest eigenvalue over the smallest from which the lowest ones are sought in the pencil turned round. They have eleven digits
 /// up to there.
@@ -35,7 +35,7 @@ const CONTEXT: &str = "the natural modes";
 pub(crate) fn all_undamped(stiffness: &Csc, mass: &Csc, interrupt: &Interrupt<'_>) -> Result<Pairs> {
     let n = stiffness.rows;
     // The eigensolver allocates through nalgebra, which aborts the process when memory is exhausted.
-    check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(ALL_UNDAMPED_COPIES), CONTEXT)?;
+    check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(EIGEN_COPIES), CONTEXT)?;
     let whole = |a: &Csc| dense(a, &a.values);
     let mut pairs = eigen::generalised(&whole(stiffness)?, &whole(mass)?, interrupt)?;
     let sizes = pairs.values.iter().map(|x| x.abs());

@@ -15,7 +15,7 @@ use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::Model;
 use crate::model::matrices::structure::MatrixKind;
 use crate::model::matrices::wave::Wave;
-use crate::model::natural_modes::all_undamped::all_undamped;
+use crate::model::natural_modes::all_undamped::{EIGEN_COPIES, all_undamped};
 use crate::model::natural_modes::quadratic_problem::Quadratic;
 use crate::model::natural_modes::static_tangents::StaticTangents;
 use num_complex::Complex64;
@@ -67,10 +67,6 @@ const LINEAR_MODES_MASSLESS: f64 = 1e-13;
 /// Real part of an eigenvalue, relative to its modulus, beyond which an undamped motion grows.
 /// Kind: rounding.
 const LINEAR_MODES_GROWS: f64 = 1e-6;
-
-/// Largest number of square matrices that [`eigen::generalised`] holds at a time.
-/// Kind: fixed.
-const LINEAR_MODES_EIGEN_COPIES: usize = 8;
 
 const CONTEXT: &str = "the natural modes";
 
@@ -348,7 +344,7 @@ impl Pencil {
             return self.modes(&all_undamped(&self.stiffness, &self.mass, interrupt)?);
         };
         // The eigensolver allocates through nalgebra, which aborts the process when memory is exhausted.
-        check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(LINEAR_MODES_EIGEN_COPIES), CONTEXT)?;
+        check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(EIGEN_COPIES), CONTEXT)?;
         let whole = |a: &Csc| dense(a, &a.values);
         // At a speed tied to the frequency the inertia may be negative: such a motion has no frequency. The pencil is
         // turned round, M φ = φ/ω² K, where K is positive definite.
