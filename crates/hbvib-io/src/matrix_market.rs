@@ -72,7 +72,9 @@ pub(crate) fn matrix(lines: &mut Lines) -> Result<Matrix> {
             let column = index(lines, words.next(), columns, "column")?;
             let value = value(lines, &mut words, is_complex)?;
             refuse_more(lines, words.next())?;
-            refuse_lossy(lines, &matrix, row == column, value)?;
+            if row == column {
+                refuse_diagonal(lines, &matrix, value)?;
+            }
             if symmetry == Symmetry::General || row == column {
                 matrix.push(lines, row, column, value)?;
                 continue;
@@ -110,7 +112,9 @@ fn array(lines: &mut Lines, matrix: &mut Matrix) -> Result<()> {
             let mut words = lines.text().split_whitespace();
             let value = value(lines, &mut words, matrix.is_complex)?;
             refuse_more(lines, words.next())?;
-            refuse_lossy(lines, matrix, row == column, value)?;
+            if row == column {
+                refuse_diagonal(lines, matrix, value)?;
+            }
             matrix.push(lines, row as u32, column as u32, value)?;
         }
     }
@@ -136,14 +140,17 @@ fn mirrored(symmetry: Symmetry, (re, im): (f64, f64)) -> (f64, f64) {
     }
 }
 
-/// The diagonal of a Hermitian matrix is real: with a loss factor the matrix is symmetric.
-fn refuse_lossy(lines: &Lines, matrix: &Matrix, on_diagonal: bool, (_, im): (f64, f64)) -> Result<()> {
-    if matrix.symmetry == Symmetry::Hermitian && on_diagonal && im != 0.0 {
-        return lines.fail(format_args!(
+/// The diagonal of a Hermitian matrix is real: with a loss factor the matrix is symmetric. That of a skew one is zero.
+fn refuse_diagonal(lines: &Lines, matrix: &Matrix, (re, im): (f64, f64)) -> Result<()> {
+    match matrix.symmetry {
+        Symmetry::Hermitian if im != 0.0 => lines.fail(format_args!(
             "an imaginary part of {im} on the diagonal of a hermitian matrix, needs 0, or symmetric in the banner"
-        ));
+        )),
+        Symmetry::Skew if (re, im) != (0.0, 0.0) => lines.fail(format_args!(
+            "{re} on the diagonal of a skew-symmetric matrix, needs 0, or another symmetry in the banner"
+        )),
+        _ => Ok(()),
     }
-    Ok(())
 }
 
 fn refuse_more(lines: &Lines, word: Option<&str>) -> Result<()> {

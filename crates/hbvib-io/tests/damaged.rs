@@ -255,6 +255,48 @@ fn sizes_beyond_the_file_are_refused() {
     std::fs::remove_file(path).unwrap();
 }
 
+/// A diagonal that its symmetry forbids, with the line; zeros are harmless.
+#[test]
+fn a_diagonal_against_the_symmetry_is_refused() {
+    let _alone = ALONE.lock();
+    let path = std::env::temp_dir().join(format!("hbvib_io_diagonal_{}.mtx", std::process::id()));
+    for (banner, entry, refused) in [
+        (
+            "coordinate real skew-symmetric",
+            "2 2 1.5",
+            Some("1.5 on the diagonal of a skew-symmetric"),
+        ),
+        (
+            "coordinate complex skew-symmetric",
+            "2 2 0 -3",
+            Some("on the diagonal of a skew-symmetric"),
+        ),
+        (
+            "coordinate complex hermitian",
+            "2 2 1 0.5",
+            Some("an imaginary part of 0.5"),
+        ),
+        ("coordinate real skew-symmetric", "2 2 0", None),
+        ("coordinate complex hermitian", "2 2 1 0", None),
+    ] {
+        let imaginary = if banner.contains("complex") { " 0" } else { "" };
+        std::fs::write(
+            &path,
+            format!("%%MatrixMarket matrix {banner}\n2 2 2\n2 1 1{imaginary}\n{entry}\n"),
+        )
+        .unwrap();
+        match (read(&path), refused) {
+            (Ok(_), None) => {}
+            (Err(e), Some(words)) => {
+                let sentence = e.to_string();
+                assert!(sentence.contains(words) && sentence.contains("line 4"), "{sentence}");
+            }
+            (found, _) => panic!("{banner}, {entry}: {}", found.is_ok()),
+        }
+    }
+    std::fs::remove_file(path).unwrap();
+}
+
 #[cfg(not(feature = "hdf5"))]
 #[test]
 fn a_matlab_file_of_version_7_3_names_the_feature_that_reads_it() {

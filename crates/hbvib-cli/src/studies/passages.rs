@@ -228,7 +228,8 @@ fn spectrum(part: &MissionPart, found: &Mission) -> String {
 
 fn summary(found: &Mission) -> String {
     let largest = found.crossings.iter().map(|one| one.amplitude).fold(0.0, f64::max);
-    let cycles: f64 = found.crossings.iter().map(|one| one.cycles).sum();
+    // A sum of no passages is −0.
+    let cycles = found.crossings.iter().map(|one| one.cycles).sum::<f64>() + 0.0;
     let mut text = format!(
         "mission: {} of the resonance, the largest amplitude {largest:.6e}, {cycles:.1} cycles near the largest ones\n",
         counted(found.crossings.len(), "passage")
