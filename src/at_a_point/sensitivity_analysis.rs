@@ -5,16 +5,12 @@ use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
 use crate::results::{Branch, ResponseSeries};
 use crate::sensitivity::{
-    Adjoint, ForcedPoint, ModePointAdjoint, ModeQuantity, Parameter, Reason, SampledModel, TotalDerivative,
-    contact_at_onset, peak_shift,
+    Adjoint, ModePointAdjoint, ModeQuantity, Parameter, Reason, SampledModel, TotalDerivative, contact_at_onset,
+    is_steep, peak_shift, stored_point,
 };
 use std::borrow::Cow;
 
 const CONTEXT: &str = "the sensitivities";
-
-/// Relative change of the amplitude over that of the frequency below which a peak is smooth and found to rounding.
-/// Kind: rounding.
-const SMOOTH_PEAK: f64 = 1e-6;
 
 /// Result at a stored point that is differentiated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -129,13 +125,9 @@ pub fn sensitivity_with(
         };
         at.solve(quantity, interrupt)?
     } else {
-        let SampledModel { condensed, samples } = solution;
-        let at = ForcedPoint::new(condensed, branch.response_dof(), samples, omega, interrupt)?;
-        let at = match watched(branch, of) {
-            Some(series) => at.watching(&series.response(), branch.response_dof(), samples)?,
-            None => at,
-        };
-        forced.insert(at).adjoint(motion, omega)?
+        forced
+            .insert(stored_point(branch, (point, omega), watched(branch, of), interrupt)?)
+            .adjoint(motion, omega)?
     };
     let Some(adjoint) = adjoint else {
         return absent(Reason::Fold);
@@ -164,7 +156,7 @@ pub fn sensitivity_with(
     }
     if let Some((at, amplitude)) = forced.as_mut().zip(peak_amplitude(branch, of, point))
         && !is_frequency(of)
-        && (omega * adjoint.by_omega).abs() > SMOOTH_PEAK * amplitude
+        && is_steep((omega, adjoint.by_omega), amplitude)
     {
         let mut reasons = try_copy(&found.reasons, CONTEXT)?;
         let shift = peak_shift(at, motion, omega, amplitude, parameters.len(), |adjoint, values| {

@@ -7,8 +7,8 @@
 use crate::common::models::oscillator;
 use crate::common::{harmonics, omega_range};
 use hbvib::{
-    Branch, Constant, ForcedOptions, Hooks, MatrixKind, Model, Parameter, Quantity, SolverOptions, forced_response,
-    sensitivity,
+    Branch, Constant, Follow, ForcedOptions, Hooks, MatrixKind, Model, Parameter, ParameterRange, Quantity,
+    SolverOptions, Status, forced_response, parameter_response, sensitivity,
 };
 
 const KT: f64 = 2.079_307_097_052_009;
@@ -79,4 +79,30 @@ fn the_amplitude_of_a_corner_has_the_derivative_of_the_corner() {
             );
         }
     }
+}
+
+/// Such a peak does not solve the equation by which peaks are followed; a smooth one of the same model does.
+#[test]
+fn a_corner_is_not_followed_over_a_parameter() {
+    let solver = harmonics(7);
+    let own = model([1.0; 3]);
+    let branch = sweep(&own, &solver);
+    let kt = Parameter::Contact {
+        constant: Constant::Kt,
+        contact: Some(0),
+    };
+    let follow = |near: f64| {
+        let range = ParameterRange {
+            start: KT,
+            stop: 1.1 * KT,
+            at: &[],
+            follow: Follow::Peak(near),
+            response: None,
+        };
+        parameter_response(&own, &solver, kt, &range, &mut Hooks::default())
+    };
+    let refused = follow(peak(&branch, 0.4971).1).unwrap_err();
+    assert_eq!(refused.status, Status::NoConvergence);
+    assert!(refused.to_string().contains("is a corner"), "{refused}");
+    assert_eq!(follow(peak(&branch, 1.258).1).unwrap().status(), Status::Ok);
 }

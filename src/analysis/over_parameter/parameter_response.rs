@@ -18,7 +18,7 @@ use crate::options::{ForcedOptions, Range, Response, SolverOptions, check_respon
 use crate::results::motions::recovery;
 use crate::results::{Branch, HigherPeak, ParameterData, Special};
 use crate::sensitivity::tracked::FirstMotion;
-use crate::sensitivity::{FollowedPoint, Parameter, ResponsePoint, TrackedResponse, design};
+use crate::sensitivity::{FollowedPoint, Parameter, ResponsePoint, TrackedResponse, design, is_corner};
 
 /// Share of a frequency within which its peak or fold is sought.
 /// Kind: tuned; measured on: not recorded.
@@ -244,10 +244,25 @@ pub(crate) fn follow_from(
         (&mut found, data),
         interrupt,
     );
-    let (status, missed) = recorder.record(hooks)?;
+    let (status, missed) = match recorder.record(hooks) {
+        // Its equation has no solution there.
+        Err(e) if e.status == Status::NoConvergence && is_peak(kind) && is_corner(branch, point, interrupt)? => {
+            return fail!(
+                NoConvergence,
+                "the peak at angular frequency {omega} is a corner, where a contact begins to slip or to part: it has no zero slope to be \
+                 followed by; solve peaks at several values instead"
+            );
+        }
+        recorded => recorded?,
+    };
     found.complete_reduction(first, solver);
     found.set_ending(status, None, (false, missed));
     Ok(found)
+}
+
+/// Whether a point is one where the slope of the response vanishes.
+fn is_peak(kind: ResponsePoint) -> bool {
+    matches!(kind, ResponsePoint::Peak | ResponsePoint::Extremum)
 }
 
 /// Options of a sweep from `start` to `stop`, both as multiples of a frequency.
