@@ -221,7 +221,9 @@ impl FrequencyCache {
                 && modal.evaluate((omega, of_modes), work, table, interrupt)?
             {
                 (self.lacks_slopes[i], self.is_modal[i]) = (keeps, true);
-                condensed.exchange(i, omega, table);
+                if !may_lack {
+                    condensed.exchange(i, omega, table);
+                }
                 continue;
             }
             interrupt.check()?;

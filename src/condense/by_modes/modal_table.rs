@@ -294,7 +294,8 @@ impl ModalTable {
 }
 
 fn check_finite(values: &[Complex64], omega: f64) -> Result<()> {
-    if values.iter().all(|z| z.is_finite()) {
+    // 0·x is 0 for finite numbers alone; a sum of them has no branches.
+    if values.iter().map(|z| 0.0 * z.re + 0.0 * z.im).sum::<f64>() == 0.0 {
         return Ok(());
     }
     crate::error::fail!(

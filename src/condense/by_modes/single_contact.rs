@@ -78,31 +78,31 @@ impl SingleContact {
         let Some([t, d_t]) = sums else {
             return false;
         };
-        let entry = |of: &Entries, k: usize, r: usize| Complex64::new(of[0][2 * k + r], of[1][2 * k + r]);
-        let [[[own, to], [from, direct]], [[d_own, d_to], [d_from, d_direct]]] =
-            [&t, &d_t].map(|t| [0, 1].map(|k| [0, 1].map(|r| entry(t, k, r))));
+        let (own, d_own) = (entry(&t, 0), entry(&d_t, 0));
+        let (to, d_to) = (entry(&t, 1), entry(&d_t, 1));
         // p = 1/(1 − own·e) scales all but the direct response, which gains to·e p·from.
         let p = (1.0 - own * e).inv();
         let d_p = p * p * (d_own * e + own * d_e);
-        let zero = Complex64::ZERO;
+        table.value[..2].copy_from_slice(&[own * p, to * p]);
+        table.slope[..2].copy_from_slice(&[d_own * p + own * d_p, d_to * p + to * d_p]);
         if !self.is_forced {
-            table.value.copy_from_slice(&[own * p, to * p, zero, zero]);
-            let slope = [d_own * p + own * d_p, d_to * p + to * d_p, zero, zero];
-            table.slope.copy_from_slice(&slope);
+            table.value[2..].fill(Complex64::ZERO);
+            table.slope[2..].fill(Complex64::ZERO);
             return true;
         }
+        let (from, d_from) = (entry(&t, 2), entry(&d_t, 2));
+        let (direct, d_direct) = (entry(&t, 3), entry(&d_t, 3));
         let (force, d_force) = (e * p * from, (d_e * p + e * d_p) * from + e * p * d_from);
-        table
-            .value
-            .copy_from_slice(&[own * p, to * p, from * p, direct + to * force]);
-        table.slope.copy_from_slice(&[
-            d_own * p + own * d_p,
-            d_to * p + to * d_p,
-            d_from * p + from * d_p,
-            d_direct + d_to * force + to * d_force,
-        ]);
+        table.value[2..].copy_from_slice(&[from * p, direct + to * force]);
+        table.slope[2..].copy_from_slice(&[d_from * p + from * d_p, d_direct + d_to * force + to * d_force]);
         true
     }
+}
+
+/// An entry of the table.
+#[inline(always)]
+fn entry([re, im]: &Entries, k: usize) -> Complex64 {
+    Complex64::new(re[k], im[k])
 }
 
 /// Sums over the modes of the first N entries and their derivatives; the result is `None` where a denominator is small.
