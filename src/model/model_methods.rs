@@ -393,7 +393,7 @@ impl Model {
     /// # Errors
     /// `OutOfMemory`, and those of [`Self::sprung_stiffness`]; `StoppedByCaller`.
     #[doc(hidden)]
-    pub fn overload(&self, omega: f64, interrupt: &Interrupt<'_>) -> Result<Option<slip_capacity::Resonance>> {
+    pub fn overload(&self, omega: f64, interrupt: &Interrupt<'_>) -> Result<Option<slip_capacity::UnresistedMotion>> {
         slip_capacity::overload(self, omega, interrupt)
     }
 
@@ -408,7 +408,7 @@ impl Model {
         omega: f64,
         harmonic: usize,
         interrupt: &Interrupt<'_>,
-    ) -> Result<Option<slip_capacity::Resonance>> {
+    ) -> Result<Option<slip_capacity::UnresistedMotion>> {
         slip_capacity::resonance(self, omega, harmonic, interrupt)
     }
 }

@@ -163,6 +163,7 @@ def main():
         os.environ[name] = "1"
     library, ledger = prepared(os.path.abspath(given.folder), given.keep)
     os.environ["HBVIB_LIBRARY"] = library
+    os.environ["HBVIB_IO_LIBRARY"] = os.path.join(os.path.dirname(library), "libhbvib_io.so")
     import cases
 
     names = list(cases.CASES)

@@ -223,7 +223,7 @@ def _behind(name, originals, names, functions):
 
 def build(folder):
     """Compiles the copy; returns the path of the library."""
-    subprocess.run(["cargo", "build", "--release", "--lib", "-p", "hbvib-c"], cwd=folder, env=_environment(), check=True)
+    subprocess.run(["cargo", "build", "--release", "--lib", "-p", "hbvib-c", "-p", "hbvib-io"], cwd=folder, env=_environment(), check=True)
     return os.path.join(_environment()["CARGO_TARGET_DIR"], "release/libhbvib.so")
 
 

@@ -30,7 +30,7 @@ use std::f64::consts::PI;
 
 /// A motion that the structure without its contacts does not resist at a harmonic of the frequency.
 #[derive(Clone, Debug)]
-pub struct Resonance {
+pub struct UnresistedMotion {
     /// Number h of the harmonic.
     pub harmonic: usize,
     /// The motion φ, its largest component of modulus 1.
@@ -57,7 +57,7 @@ const UNBOUNDED_GROWTH: f64 = 1e10;
 
 const CONTEXT: &str = "the resonance";
 
-impl Resonance {
+impl UnresistedMotion {
     /// Whether no bounded motion balances the force.
     pub fn is_overloaded(&self) -> bool {
         self.growth >= UNBOUNDED_GROWTH
@@ -67,7 +67,7 @@ impl Resonance {
 /// The undamped resonance because of which the model has no bounded response at the angular frequency `omega`, if one
 /// is found.
 #[doc(hidden)]
-pub(crate) fn overload(model: &Model, omega: f64, interrupt: &Interrupt<'_>) -> Result<Option<Resonance>> {
+pub(crate) fn overload(model: &Model, omega: f64, interrupt: &Interrupt<'_>) -> Result<Option<UnresistedMotion>> {
     let at_frequency = model.at_frequency(omega)?;
     let mut last = None;
     for force in model.excitation().forces() {
@@ -76,7 +76,7 @@ pub(crate) fn overload(model: &Model, omega: f64, interrupt: &Interrupt<'_>) -> 
         }
         last = Some(force.harmonic);
         let found = at_frequency.resonance(omega, force.harmonic, interrupt)?;
-        if found.as_ref().is_some_and(Resonance::is_overloaded) {
+        if found.as_ref().is_some_and(UnresistedMotion::is_overloaded) {
             return Ok(found);
         }
     }
@@ -91,7 +91,7 @@ pub(crate) fn resonance(
     omega: f64,
     harmonic: usize,
     interrupt: &Interrupt<'_>,
-) -> Result<Option<Resonance>> {
+) -> Result<Option<UnresistedMotion>> {
     interrupt.check()?;
     let n = model.structure().ndof();
     let structure = model.structure();
@@ -137,7 +137,7 @@ pub(crate) fn resonance(
     } else {
         0.0
     };
-    Ok(Some(Resonance {
+    Ok(Some(UnresistedMotion {
         harmonic,
         shape,
         force,

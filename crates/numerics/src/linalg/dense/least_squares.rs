@@ -3,6 +3,8 @@
 //! A P = Q R with a decreasing diagonal of R shows the rank (Businger & Golub 1965, doi:10.1007/BF01436084). The
 //! solution of minimum norm is chosen: unlike that of elimination, it has no component along directions that the
 //! equations leave undetermined.
+//!
+//! Factorisations of libraries cannot be stopped: this one asks the interrupt before each column, and requests memory that may be refused.
 
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
