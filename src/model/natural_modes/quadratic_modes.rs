@@ -1,26 +1,22 @@
 //! Eigenvalues λ in the upper half plane of (λ²M + λC + K) x = 0, with damping and gyroscopic forces in C and structural
 //! damping in K.
 //!
-//! A small structure is projected on all modes of M and the Hermitian part of K, and solved as λ (x, λx) = (λx, −Kx − λCx) by Schur's
-//! form (Tisseur & Meerbergen 2001, doi:10.1137/S0036144500381988). The modes of a large one are found by the search of
+//! A small structure is projected on all modes of M and the Hermitian part of K, and solved as λ (x, λx) = (λx, −Kx − λCx) (Tisseur & Meerbergen 2001, doi:10.1137/S0036144500381988). The modes of a large one are found by the search of
 //! [`quadratic_search`](crate::model::natural_modes::quadratic_search). Each eigenvalue is then corrected by inverse iteration with the whole matrices
 //! (Neumaier 1985, doi:10.1137/0722055), which may not lead to another one.
 
 use crate::error::{Result, Status, check_memory, fail, try_copy, try_extend, try_push, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::dense::general_eigen;
 use crate::linalg::exact_sums::quadratic::{ComplexSum, product, quadratic};
 use crate::linalg::factors::factor::Factor;
-use crate::linalg::libraries::{DMatrix, Schur};
+use crate::linalg::libraries::DMatrix;
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::natural_modes::all_undamped::all_undamped;
 use crate::model::natural_modes::linear_modes::{ALL_MODES_UP_TO, finds_all};
 use crate::model::natural_modes::quadratic_problem::{Pair, QUADRATIC_PROBLEM_REAL, Quadratic, is_one};
 use crate::model::natural_modes::quadratic_search::lowest_by_search;
 use num_complex::Complex64;
-
-/// Iterations of Schur's form for each eigenvalue.
-/// Kind: cap.
-const QUADRATIC_MODES_ITERATIONS: usize = 200;
 
 /// Relative distance of the shift from an eigenvalue in its correction.
 /// Kind: tuned; measured on: not recorded.
@@ -34,7 +30,7 @@ const QUADRATIC_MODES_CORRECTIONS: usize = 20;
 /// Kind: tuned; measured on: not recorded.
 const BECOMES_OTHER: (f64, f64) = (1e-7, 0.1);
 
-/// Modulus of an eigenvalue, over the norm of all of a small structure, from which Schur's form has twelve digits.
+/// Modulus of an eigenvalue, over the norm of all of a small structure, from which it has twelve digits.
 /// Kind: rounding.
 const QUADRATIC_MODES_EXACT: f64 = 1e-4;
 
@@ -42,7 +38,7 @@ const QUADRATIC_MODES_EXACT: f64 = 1e-4;
 /// Kind: rounding.
 const QUADRATIC_MODES_FLOOR: f64 = 1e-10;
 
-/// Square matrices of the order 2r that Schur's form holds at a time.
+/// Square matrices of the order 2r that the eigensolver holds at a time.
 /// Kind: fixed.
 const QUADRATIC_MODES_COPIES: usize = 6;
 
@@ -155,22 +151,22 @@ impl Quadratic<'_> {
         for omega in &mut frequencies {
             *omega = omega.max(QUADRATIC_MODES_FLOOR * highest);
         }
-        let mut companion = DMatrix::<Complex64>::zeros(2 * r, 2 * r);
+        // Column after column, the two states of each motion side by side and those of stiff motions first: reductions from the left
+        // then leave to small entries their own digits.
+        let order = 2 * r;
+        let place = |mode: usize| 2 * (r - 1 - mode);
+        let mut companion = try_vec(order * order, Complex64::ZERO, CONTEXT)?;
         for (j, &omega) in frequencies.iter().enumerate() {
-            companion[(j, r + j)] = omega.into();
+            companion[(place(j) + 1) * order + place(j)] = omega.into();
             for i in 0..r {
-                companion[(r + i, j)] = -k[(i, j)] / omega;
-                companion[(r + i, r + j)] = -c[(i, j)];
+                companion[place(j) * order + place(i) + 1] = -k[(i, j)] / omega;
+                companion[(place(j) + 1) * order + place(i) + 1] = -c[(i, j)];
             }
         }
-        let Some(schur) = Schur::try_new(companion, f64::EPSILON, QUADRATIC_MODES_ITERATIONS * 2 * r) else {
-            return fail!(NoConvergence, "the eigenvalues of the damped structure were not found");
-        };
-        let (q, t) = schur.unpack();
-        let size = t.norm();
+        let size = companion.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
+        let states = general_eigen::eigen_of_any_order(&companion, order, interrupt)?;
         let mut pairs = Vec::new();
-        for j in 0..2 * r {
-            let value = t[(j, j)];
+        for (&value, state) in states.values.iter().zip(states.vectors.chunks_exact(order)) {
             let oscillates = value.im
                 > QUADRATIC_PROBLEM_REAL * value.norm().max(f64::EPSILON.sqrt() * QUADRATIC_PROBLEM_REAL * size);
             let may_grow = value.re > 0.0 && value.im.abs() <= QUADRATIC_PROBLEM_REAL * value.norm();
@@ -178,21 +174,10 @@ impl Quadratic<'_> {
                 continue;
             }
             interrupt.check()?;
-            // (T − t_jj) y = 0 by back substitution; equal eigenvalues keep independent vectors.
-            let mut y = try_vec(2 * r, Complex64::ZERO, CONTEXT)?;
-            y[j] = Complex64::ONE;
-            for i in (0..j).rev() {
-                let sum: Complex64 = (i + 1..=j).map(|l| t[(i, l)] * y[l]).sum();
-                let mut gap = t[(i, i)] - value;
-                if gap.norm() < f64::EPSILON * size {
-                    gap = (f64::EPSILON * size).into();
-                }
-                y[i] = -sum / gap;
-            }
             let mut shape = try_vec(n, Complex64::ZERO, CONTEXT)?;
-            for mode in 0..r {
-                let part = (0..=j).map(|l| q[(mode, l)] * y[l]).sum::<Complex64>() / frequencies[mode];
-                for (x, phi) in shape.iter_mut().zip(basis.column(mode).iter()) {
+            for (mode, (omega, column)) in frequencies.iter().zip(basis.column_iter()).enumerate() {
+                let part = state[place(mode)] / omega;
+                for (x, phi) in shape.iter_mut().zip(column.iter()) {
                     *x += part * phi;
                 }
             }

@@ -28,11 +28,25 @@ pub struct Pairs {
     pub vectors: Vec<Complex64>,
 }
 
-/// Eigenpairs of the column-major matrix `a` of order n. The interrupt is checked before, not within.
+/// Eigenpairs of the column-major matrix `a` of order n. The interrupt is checked before, not within. Large real matrices with pairs of
+/// equal eigenvalues are refused.
 ///
 /// # Errors
 /// `NoConvergence`, `OutOfMemory`; `StoppedByCaller`.
 pub fn eigen(a: &[Complex64], n: usize, interrupt: &Interrupt<'_>) -> Result<Pairs> {
+    up_to(a, n, AS_COMPLEX_UP_TO, interrupt)
+}
+
+/// Eigenpairs as [`eigen`] finds them, whatever time a real matrix takes.
+///
+/// # Errors
+/// As [`eigen`].
+pub fn eigen_of_any_order(a: &[Complex64], n: usize, interrupt: &Interrupt<'_>) -> Result<Pairs> {
+    up_to(a, n, usize::MAX, interrupt)
+}
+
+/// Eigenpairs, where a real matrix may be treated as a complex one up to an order.
+fn up_to(a: &[Complex64], n: usize, as_complex: usize, interrupt: &Interrupt<'_>) -> Result<Pairs> {
     interrupt.check()?;
     if a.iter().any(|z| !z.is_finite()) {
         return fail!(NoConvergence, "a matrix of order {n} is not finite");
@@ -48,7 +62,7 @@ pub fn eigen(a: &[Complex64], n: usize, interrupt: &Interrupt<'_>) -> Result<Pai
     let is_real = a.iter().all(|z| z.im == 0.0);
     // Where pairs of complex eigenvalues are equal, faer 0.24 returns wrong vectors of a real matrix.
     let done = is_real && of_real(a, n, &mut found)? && error(a, n, &found)? <= WRONG_VECTORS;
-    if !done && (n > AS_COMPLEX_UP_TO && is_real || !of_complex(a, n, &mut found)?) {
+    if !done && (n > as_complex && is_real || !of_complex(a, n, &mut found)?) {
         return fail!(NoConvergence, "the eigenvalues of a matrix of order {n} were not found");
     }
     for x in found.vectors.chunks_exact_mut(n) {
