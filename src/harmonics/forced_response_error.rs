@@ -6,6 +6,7 @@ use crate::condense::by_modes::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::contact::Contact;
 use crate::error::{Result, boxed, try_push};
+use crate::fourier::Measure;
 use crate::harmonics::carried_harmonics;
 use crate::harmonics::cutoff_harmonic::SMALL_STRUCTURE;
 use crate::harmonics::cutoff_harmonic::{self, CutoffHarmonic};
@@ -211,7 +212,13 @@ impl<'a> ForcedEstimator<'a> {
     fn extent(&mut self, solved: &Solved<'_>, work: &Work) -> Result<Option<Extent>> {
         let set = solved.condensed.set();
         let own = set.numbers().last().copied().unwrap_or(0);
+        // Of a harmonic that neither the point nor its extension carries nothing would be told.
+        let watched = self.asked.responses.iter().map(|response| match response.measure {
+            Measure::Harmonic(h) => carried_harmonics::carried_to(set, h),
+            _ => 0,
+        });
         let least = self.second.least(set, carried_harmonics::least_extension(set));
+        let least = watched.fold(least, usize::max);
         // How a law of the caller resists the velocity is not known: the cut-off, which counts stiffness alone, may come too early.
         let reach = if self.model.contacts().iter().any(Contact::is_of_caller) {
             carried_harmonics::carried_from(set, 2 * least + 1)
