@@ -2,7 +2,7 @@
 
 use crate::condense::by_factors::flexibility::Table;
 use crate::condense::by_modes::modal_table::{ModalTable, ModalWork};
-use crate::condense::by_modes::soft_modes::{SOFT_MODES_NODES, SoftModes, SoftSizes, SoftWork};
+use crate::condense::by_modes::soft_modes::{SOFT_MODES_ENTRIES, SOFT_MODES_NODES, SoftModes, SoftSizes, SoftWork};
 use crate::condense::by_modes::soft_store::Plan;
 use crate::condense::by_modes::sum_terms::Source;
 use crate::error::{Result, Status, try_vec};
@@ -15,9 +15,9 @@ use std::f64::consts::PI;
 
 const CONTEXT: &str = "the flexibility from soft modes";
 
-/// Frequency over the end of the range from which on a mode is eliminated: the polynomials converge as 14⁻ᵏ then.
+/// Frequency over the end of the range from which on a mode is eliminated: the polynomials converge as 18⁻ᵏ then.
 /// Kind: fixed.
-const BEYOND_RANGE: f64 = 4.0;
+const BEYOND_RANGE: f64 = 5.0;
 
 /// Least gain for which soft modes are taken, in operations.
 /// Kind: tuned; measured on: a finite-element sector with 60 contacts, whose sums of polynomials wait for memory.
@@ -75,7 +75,12 @@ impl Plan {
         };
         let numbers = sizes.numbers();
         let mut values = try_vec(SOFT_MODES_NODES * numbers, Complex64::ZERO, CONTEXT)?;
-        let mut terms = try_vec(SOFT_MODES_NODES * numbers, Complex64::ZERO, CONTEXT)?;
+        let in_block = SOFT_MODES_ENTRIES * SOFT_MODES_NODES;
+        let mut terms = try_vec(
+            numbers.div_ceil(SOFT_MODES_ENTRIES) * in_block,
+            Complex64::ZERO,
+            CONTEXT,
+        )?;
         let mut work = Elimination::new(table, self.first, sizes)?;
         let angle = |node: usize| PI * (node as f64 + 0.5) / SOFT_MODES_NODES as f64;
         let (middle, half) = (0.5 * (self.range.0 + self.range.1), 0.5 * (self.range.1 - self.range.0));
@@ -83,13 +88,19 @@ impl Plan {
             interrupt.check()?;
             work.at(table, middle + half * angle(node).cos(), of_node, interrupt)?;
         }
-        for (k, term) in terms.chunks_exact_mut(numbers).enumerate() {
-            interrupt.check()?;
+        let mut factors = [[0.0; SOFT_MODES_NODES]; SOFT_MODES_NODES];
+        for (k, factors) in factors.iter_mut().enumerate() {
             let weight = if k == 0 { 1.0 } else { 2.0 } / SOFT_MODES_NODES as f64;
-            for (node, of_node) in values.chunks_exact(numbers).enumerate() {
-                let factor = weight * (k as f64 * angle(node)).cos();
-                for (term, value) in term.iter_mut().zip(of_node) {
-                    *term += value * factor;
+            for (node, factor) in factors.iter_mut().enumerate() {
+                *factor = weight * (k as f64 * angle(node)).cos();
+            }
+        }
+        for (at, block) in terms.chunks_exact_mut(in_block).enumerate() {
+            for (term, factors) in block.chunks_exact_mut(SOFT_MODES_ENTRIES).zip(&factors) {
+                for (of_node, factor) in values.chunks_exact(numbers).zip(factors) {
+                    for (term, value) in term.iter_mut().zip(&of_node[at * SOFT_MODES_ENTRIES..]) {
+                        *term += value * factor;
+                    }
                 }
             }
         }
@@ -130,7 +141,7 @@ impl Plan {
                 table.number * omega,
                 denominators,
                 &mut soft,
-                &mut found,
+                &mut found.value,
                 interrupt,
             );
             let agrees = regular(made)?.is_some() && agree(&exact.value, &found.value, outputs);

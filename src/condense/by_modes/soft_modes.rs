@@ -10,7 +10,6 @@
 
 #![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
 
-use crate::condense::by_factors::flexibility::Table;
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::complex_columns;
@@ -20,14 +19,14 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the flexibility from soft modes";
 
-/// Frequencies at which Q, V, W and S are computed, and most terms of their sums: with poles beyond four times the range these leave
-/// 14⁻¹⁴, as 1e-16.
+/// Frequencies at which Q, V, W and S are computed, and terms of their sums: with poles beyond five times the range these leave 18⁻¹¹,
+/// as 2e-14.
 /// Kind: fixed.
-pub(super) const SOFT_MODES_NODES: usize = 14;
+pub(super) const SOFT_MODES_NODES: usize = 11;
 
-/// Entries of the sums that are added at a time.
+/// Numbers that are summed at a time: those of each polynomial follow each other, polynomial after polynomial.
 /// Kind: block.
-const SOFT_MODES_ENTRIES: usize = 128;
+pub(super) const SOFT_MODES_ENTRIES: usize = 8;
 
 /// Q, V, W and S − d_s as sums of polynomials.
 pub(crate) struct SoftModes {
@@ -36,7 +35,7 @@ pub(crate) struct SoftModes {
     /// Range of ν.
     pub range: (f64, f64),
     pub sizes: SoftSizes,
-    /// Coefficients of each polynomial: Q, V, W and S − d_s, column after column.
+    /// Coefficients of Q, V, W and S − d_s, column after column, [`SOFT_MODES_ENTRIES`] of each polynomial at a time.
     pub terms: Vec<Complex64>,
 }
 
@@ -117,7 +116,7 @@ impl SoftModes {
         (self.range.0..=self.range.1).contains(&nu)
     }
 
-    /// Fills in the table at ν of a harmonic, from the denominators d of the soft modes; its slopes become zero.
+    /// Fills in the values of a table at ν of a harmonic, from the denominators d of the soft modes.
     ///
     /// # Errors
     /// `Singular`; `StoppedByCaller`.
@@ -127,7 +126,7 @@ impl SoftModes {
         nu: f64,
         denominators: impl Iterator<Item = Complex64>,
         work: &mut SoftWork,
-        table: &mut Table,
+        value: &mut [Complex64],
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         let SoftSizes { outputs, soft } = self.sizes;
@@ -140,10 +139,9 @@ impl SoftModes {
         work.motions.copy_from_slice(parts.w);
         work.lu.factor(interrupt)?;
         work.lu.solve_columns(&mut work.motions, false, interrupt)?;
-        table.value.copy_from_slice(parts.q);
-        table.slope.fill(Complex64::ZERO);
+        value.copy_from_slice(parts.q);
         matmul(
-            MatMut::from_column_major_slice_mut(&mut table.value, outputs, outputs),
+            MatMut::from_column_major_slice_mut(value, outputs, outputs),
             Accum::Add,
             MatRef::from_column_major_slice(parts.v, outputs, soft),
             MatRef::from_column_major_slice(&work.motions, soft, outputs),
@@ -210,7 +208,8 @@ impl SoftModes {
     }
 }
 
-/// Σ f c and Σ f′ c of the coefficients c, by a factor f and its slope for each polynomial.
+/// Σ f c and Σ f′ c of the coefficients c, by a factor f and its slope for each polynomial. The sums of a few numbers stay in registers
+/// while the coefficients are read in the order of memory.
 struct Polynomials<'a> {
     terms: &'a [Complex64],
     factors: &'a [[f64; 2]],
@@ -223,25 +222,21 @@ impl WithSimd for Polynomials<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) {
-        let numbers = self.value.len();
-        let mut from = 0;
-        let blocks = self.value.chunks_mut(SOFT_MODES_ENTRIES);
-        for (value, slope) in blocks.zip(self.slope.chunks_mut(SOFT_MODES_ENTRIES)) {
+        let blocks = self.terms.chunks_exact(SOFT_MODES_ENTRIES * SOFT_MODES_NODES);
+        let values = self.value.chunks_mut(SOFT_MODES_ENTRIES);
+        for ((value, slope), block) in values.zip(self.slope.chunks_mut(SOFT_MODES_ENTRIES)).zip(blocks) {
             let [mut sum, mut d_sum] = [[0.0; 2 * SOFT_MODES_ENTRIES]; 2];
-            let count = value.len();
-            for (term, [factor, d_factor]) in self.terms.chunks_exact(numbers).zip(self.factors) {
-                let term = cast_slice::<Complex64, f64>(&term[from..from + count]);
-                let sums = sum[..2 * count].iter_mut().zip(&mut d_sum[..2 * count]);
-                for ((sum, d_sum), c) in sums.zip(term) {
-                    *sum += factor * c;
-                    *d_sum += d_factor * c;
+            let (terms, _) = cast_slice::<Complex64, f64>(block).as_chunks::<{ 2 * SOFT_MODES_ENTRIES }>();
+            for (term, [factor, d_factor]) in terms.iter().zip(self.factors) {
+                for i in 0..2 * SOFT_MODES_ENTRIES {
+                    sum[i] += factor * term[i];
+                    d_sum[i] += d_factor * term[i];
                 }
             }
             for (k, (value, slope)) in value.iter_mut().zip(slope).enumerate() {
                 *value = Complex64::new(sum[2 * k], sum[2 * k + 1]);
                 *slope = Complex64::new(d_sum[2 * k], d_sum[2 * k + 1]);
             }
-            from += count;
         }
     }
 }

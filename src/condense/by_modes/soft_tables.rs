@@ -108,7 +108,8 @@ impl ModalTable {
         };
         let own = work.soft.insert(known);
         let denominators = self.soft_denominators(soft.first, omega);
-        soft.evaluate(self.number, nu, denominators, own, table, interrupt)?;
+        soft.evaluate(self.number, nu, denominators, own, &mut table.value, interrupt)?;
+        table.slope.fill(Complex64::ZERO);
         work.by_soft = true;
         Ok(Some(true))
     }
