@@ -11,6 +11,7 @@ use crate::linalg::dense::complex_products;
 use crate::linalg::factors::lu::Lu;
 use crate::options::Range;
 use num_complex::Complex64;
+use std::cmp::Ordering;
 use std::f64::consts::PI;
 
 const CONTEXT: &str = "the flexibility from soft modes";
@@ -58,6 +59,7 @@ impl Plan {
             return None;
         }
         Some(Self {
+            number: table.number,
             range,
             first,
             tables: SOFT_MODES_NODES * of_node / (exact - own),
@@ -259,12 +261,10 @@ impl Elimination {
         let products = self.products.chunks_exact(soft);
         for (k, (to, products)) in of_modes.chunks_exact_mut(soft).zip(products).enumerate() {
             for (mode, (to, product)) in to.iter_mut().zip(products).enumerate() {
-                *to = if k + 1 < outputs {
-                    rows.adjoint()[(self.first + mode) * count + k].conj() + product
-                } else if k + 1 == outputs {
-                    table.excitation(self.first + mode, omega)[0] + product
-                } else {
-                    -product
+                *to = match (k + 1).cmp(&outputs) {
+                    Ordering::Less => rows.adjoint()[(self.first + mode) * count + k].conj() + product,
+                    Ordering::Equal => table.excitation(self.first + mode, omega)[0] + product,
+                    Ordering::Greater => -product,
                 };
             }
         }

@@ -19,7 +19,6 @@ impl fmt::Debug for SoftStore {
 /// Soft modes of a harmonic over a range, from a number of tables on.
 pub(crate) struct SoftTables {
     pub plan: Plan,
-    pub number: f64,
     /// Rows and excitations by which a harmonic with the same numbers is recognised.
     pub left: Arc<Vec<Complex64>>,
     pub excitations: Vec<Complex64>,
@@ -32,6 +31,8 @@ pub(crate) struct SoftTables {
 /// Soft modes of a range of ν, and the tables within it after which their elimination has paid.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Plan {
+    /// Number of the harmonic.
+    pub number: f64,
     pub range: (f64, f64),
     /// Index of the first soft mode.
     pub first: usize,

@@ -34,7 +34,6 @@ impl ModalTable {
             }
             let made = Arc::new(SoftTables {
                 plan,
-                number: self.number,
                 left: self.rows.shared_left(),
                 excitations,
                 left_out: AtomicUsize::new(plan.tables),
@@ -133,8 +132,7 @@ impl ModalTable {
     fn has_numbers_of(&self, soft: &SoftTables) -> bool {
         let left = self.rows.shared_left();
         let excitations = self.force.iter().chain(&self.unbalance);
-        soft.number == self.number
-            && soft.excitations.len() == self.force.len() + self.unbalance.len()
+        soft.excitations.len() == self.force.len() + self.unbalance.len()
             && soft.excitations.iter().eq(excitations)
             && (Arc::ptr_eq(&soft.left, &left) || soft.left == left)
     }
