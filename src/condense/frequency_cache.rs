@@ -216,8 +216,11 @@ impl FrequencyCache {
                 continue;
             }
             let block = &condensed.blocks()[i];
+            if let Some(Some(modal)) = self.of_modes.tables.get(i).filter(|_| !of_modes) {
+                modal.count(omega, &mut self.of_modes.work[if keeps { i } else { 0 }], interrupt)?;
+            }
             if let Some(Some(modal)) = self.of_modes.tables.get(i)
-                && let work = &mut self.of_modes.work[if keeps { i } else { 0 }]
+                && let work = &mut self.of_modes.work[modal.own_work(keeps, i)]
                 && modal.evaluate((omega, of_modes), work, table, interrupt)?
             {
                 (self.lacks_slopes[i], self.is_modal[i]) = (keeps, true);
@@ -270,7 +273,8 @@ impl FrequencyCache {
                 continue;
             }
             if let Some(Some(modal)) = self.of_modes.tables.get(i)
-                && modal.evaluate_excited(omega, &mut self.of_modes.work[0], table, interrupt)?
+                && let work = &mut self.of_modes.work[modal.own_work(false, i)]
+                && modal.evaluate_excited(omega, work, table, interrupt)?
             {
                 continue;
             }
@@ -297,7 +301,7 @@ fn of_wave(
     let before = waves.len();
     let rows = ModalRows::shared((condensed, i, response), source.clone(), waves)?;
     let is_known = waves.len() == before;
-    let modal = ModalTable::new((condensed, i), rows)?;
+    let modal = ModalTable::new((condensed, i), rows)?.over(range)?;
     let mut table = Table::new(condensed.coordinates())?;
     // The slope is made of the same modes: once shows that it is right.
     let mut checks_slope = true;

@@ -448,6 +448,10 @@ impl<'a> ForcedEstimator<'a> {
             let modes = self.shared.waves.of(self.model, condensed, i, self.interrupt)?;
             let rows = modes.map(|modes| self.shared.waves.rows((condensed, i, self.asked.response), modes));
             let table = rows.ok().map(|rows| ModalTable::new((condensed, i), rows?));
+            let table = table.map(|table| match self.asked.range {
+                Some(range) => table?.over(range),
+                None => table,
+            });
             try_push(&mut tables, table.transpose()?, CONTEXT)?;
         }
         Ok(tables)

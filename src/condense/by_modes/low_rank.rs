@@ -93,7 +93,7 @@ impl Coefficients {
     }
 
     /// The numbers of the rows of B in a column of T′.
-    fn rows_of(&self, column: &[Complex64], to: &mut [Complex64]) {
+    pub fn rows_of(&self, column: &[Complex64], to: &mut [Complex64]) {
         let (contacts, springs) = to.split_at_mut(self.coordinates);
         contacts.copy_from_slice(&column[..self.coordinates]);
         springs.copy_from_slice(&column[self.coordinates + 1..]);

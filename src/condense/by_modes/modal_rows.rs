@@ -68,7 +68,7 @@ pub struct ModalRows {
     /// Whether some of the rows belong to springs.
     has_springs: bool,
     /// Row products with Φ, mode after mode, the stiffest mode first.
-    left: Vec<Complex64>,
+    left: Arc<Vec<Complex64>>,
     /// Row products with the adjoint shapes; empty where these equal the shapes.
     adjoint: Vec<Complex64>,
     /// Sums S_j of the series over stiff modes, for each number of soft modes that stay outside of it.
@@ -125,7 +125,7 @@ impl ModalRows {
             coordinates,
             rows,
             has_springs,
-            left,
+            left: Arc::new(left),
             adjoint,
             stiff: [const { [const { OnceLock::new() }; MOST_TERMS] }; SOFT.len()],
             source,
@@ -184,6 +184,11 @@ impl ModalRows {
     /// Row products L with the shapes, mode after mode.
     pub fn left(&self) -> &[Complex64] {
         &self.left
+    }
+
+    /// The same in shared memory.
+    pub(super) fn shared_left(&self) -> Arc<Vec<Complex64>> {
+        Arc::clone(&self.left)
     }
 
     /// Product of a force with the adjoint shape of each mode or pole.

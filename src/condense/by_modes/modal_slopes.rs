@@ -15,10 +15,13 @@ impl ModalTable {
     /// ∂x/∂ω of the motions x = H (excitation − w) of contacts and response under contact forces w that do not change, with the
     /// numbers of the last evaluation, at `omega`, in `work`.
     pub fn slope_along(&self, omega: f64, work: &mut ModalWork, w: &[Complex64], change: &mut [Complex64]) {
-        let Some(work) = work.0.as_deref_mut() else {
+        let at = self.denominator(omega);
+        if work.by_soft {
+            return self.slope_by_soft(omega, work, w, change);
+        }
+        let Some(work) = work.sums.as_deref_mut() else {
             return;
         };
-        let at = self.denominator(omega);
         let frequency = at.frequency();
         let (rows, coordinates) = (self.rows.count(), self.rows.coordinates());
         let (of, order) = (&self.coefficients, self.coefficients.len());

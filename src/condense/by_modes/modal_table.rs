@@ -8,6 +8,8 @@ use crate::condense::by_factors::flexibility::Table;
 use crate::condense::by_modes::low_rank::{Coefficients, LowRank, Plain};
 use crate::condense::by_modes::modal_rows::ModalRows;
 use crate::condense::by_modes::single_contact::{Denominators, SingleContact};
+use crate::condense::by_modes::soft_modes::SoftWork;
+use crate::condense::by_modes::soft_store::SoftTables;
 use crate::condense::by_modes::sum_terms::{Denominator, Frequency, Source};
 use crate::condense::by_modes::wave_modes::{NEAR_ALONE, NEAR_RESONANCE};
 use crate::error::{Result, boxed, try_vec};
@@ -21,19 +23,26 @@ const CONTEXT: &str = "the flexibility from modes";
 /// Flexibility table of one harmonic from the modes or poles of its wave.
 pub struct ModalTable {
     pub(crate) rows: Arc<ModalRows>,
-    number: f64,
+    pub(super) number: f64,
     pub(crate) coefficients: Coefficients,
     /// Product of the excitation with the adjoint shapes, and that of the forces which grow with ω², over ω²; empty
     /// without such forces.
-    force: Vec<Complex64>,
-    unbalance: Vec<Complex64>,
+    pub(super) force: Vec<Complex64>,
+    pub(super) unbalance: Vec<Complex64>,
     /// Closed sums for one contact without springs, where the harmonic has no more; else `None`.
     single: Option<SingleContact>,
+    /// The soft modes by which tables in the range of a sweep are made.
+    pub(super) soft: Option<Arc<SoftTables>>,
 }
 
 /// Work space for the tables of one structure, one after the other; made when a table first needs it.
 #[derive(Default)]
-pub struct ModalWork(pub(crate) Option<Box<Work>>);
+pub struct ModalWork {
+    pub(crate) sums: Option<Box<Work>>,
+    /// That of soft modes, and whether the last table was made by these.
+    pub(super) soft: Option<Box<SoftWork>>,
+    pub(super) by_soft: bool,
+}
 
 pub(crate) struct Work {
     /// 1/d and −∂d/d², one number per mode.
@@ -56,11 +65,11 @@ pub(crate) struct Work {
 
 impl ModalWork {
     fn of(&mut self, table: &ModalTable) -> Result<&mut Work> {
-        let known = match self.0.take() {
+        let known = match self.sums.take() {
             Some(known) if known.fits(table) => known,
             _ => boxed(|| Work::new(table))?,
         };
-        Ok(self.0.insert(known))
+        Ok(self.sums.insert(known))
     }
 }
 
@@ -111,6 +120,7 @@ impl ModalTable {
             force,
             unbalance,
             single,
+            soft: None,
             rows,
         })
     }
@@ -123,6 +133,24 @@ impl ModalTable {
     pub fn evaluate(
         &self,
         (omega, slopes): (f64, bool),
+        work: &mut ModalWork,
+        table: &mut Table,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool> {
+        if !slopes && let Some(is_clear) = self.evaluate_by_soft(omega, work, table, interrupt)? {
+            if is_clear {
+                check_finite(&table.value, omega)?;
+            }
+            return Ok(is_clear);
+        }
+        self.evaluate_by_sums(omega, slopes, work, table, interrupt)
+    }
+
+    /// As [`Self::evaluate`], by sums over all modes.
+    pub(super) fn evaluate_by_sums(
+        &self,
+        omega: f64,
+        slopes: bool,
         work: &mut ModalWork,
         table: &mut Table,
         interrupt: &Interrupt<'_>,
@@ -146,6 +174,7 @@ impl ModalTable {
             let of = &self.coefficients;
             single.evaluate(by, (of.entry(0, frequency.at), of.d_entry(0, frequency.slope)), table)
         } else {
+            work.by_soft = false;
             let work = work.of(self)?;
             let is_clear = self
                 .rows
@@ -178,6 +207,16 @@ impl ModalTable {
     ) -> Result<bool> {
         let (rows, coordinates) = (self.rows.count(), self.rows.coordinates());
         let (at, nu) = (self.denominator(omega), self.number * omega);
+        let first = coordinates * (coordinates + 1);
+        if let Some(is_clear) = self.evaluate_by_soft(omega, work, table, interrupt)? {
+            if is_clear {
+                table.value[..first].fill(Complex64::ZERO);
+                self.slope_along(omega, work, &[], &mut table.slope[first..]);
+                check_finite(&table.value[first..], omega)?;
+            }
+            return Ok(is_clear);
+        }
+        work.by_soft = false;
         let of_work = work.of(self)?;
         let memory = (&mut of_work.inverse, &mut of_work.slopes);
         let is_clear = self.rows.source().invert((at, nu, NEAR_RESONANCE), memory.0, memory.1);
@@ -192,7 +231,6 @@ impl ModalTable {
         }
         table.value.fill(Complex64::ZERO);
         table.slope.fill(Complex64::ZERO);
-        let first = coordinates * (coordinates + 1);
         let column = &mut table.value[first..];
         column.copy_from_slice(&of_work.plain[coordinates * rows..][..=coordinates]);
         let plain = Plain {

@@ -4,6 +4,7 @@ use crate::condense::blocks::harmonic_block::{Artificial, Values};
 use crate::condense::by_modes::few_directions::few_directions;
 use crate::condense::by_modes::modal_rows::ModalRows;
 use crate::condense::by_modes::quadratic_poles;
+use crate::condense::by_modes::soft_store::SoftStore;
 use crate::condense::by_modes::sum_terms::Source;
 use crate::condense::by_modes::wave_modes::{WaveModes, proportional};
 use crate::condense::by_modes::wave_poles::WavePoles;
@@ -429,6 +430,7 @@ fn modes_of(
         loss_factor,
         springs,
         dampers: rows,
+        soft: SoftStore::default(),
     }))
 }
 

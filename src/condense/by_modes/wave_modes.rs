@@ -9,6 +9,7 @@
 //! enters K_κ with its real part; its imaginary part adds to the low rank, and so does damping L Lᴴ of few directions beside
 //! αM + βK, see `condense::few_directions`.
 
+use crate::condense::by_modes::soft_store::SoftStore;
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::few_motions::reduced_wave::MotionRow;
 use num_complex::Complex64;
@@ -38,6 +39,8 @@ pub struct WaveModes {
     pub(crate) springs: Vec<(MotionRow, f64)>,
     /// Rows Lᴴ of the damping αM + βK + L Lᴴ.
     pub(crate) dampers: Vec<MotionRow>,
+    /// Soft modes for tables along a sweep.
+    pub(crate) soft: SoftStore,
 }
 
 /// Relative size of a denominator below which a mode hides the others: a sum over modes then has so many digits less.
@@ -70,6 +73,14 @@ impl WaveModes {
             *inverse = d.inv();
         }
         least > near * near
+    }
+
+    /// Whether no denominator a − b μ of a mode from `first` on is so small at ν that digits would be lost, as [`Self::invert`] has it.
+    pub(crate) fn is_clear(&self, first: usize, nu: f64, a: Complex64, b: Complex64) -> bool {
+        self.values[first..].iter().all(|mu| {
+            let least = NEAR_RESONANCE * (1.0 + nu * nu * mu.abs());
+            (a - b * mu).norm_sqr() > least * least
+        })
     }
 
     /// Whether stiffness damps the wave, so that the part of K_κ that belongs to no structure counts.
