@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod blade_families;
 mod damped_mode;
 mod families;
 mod free_bodies;

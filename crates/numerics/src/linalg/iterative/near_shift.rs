@@ -39,6 +39,11 @@ const NEAR_SHIFT_DEPENDENT: f64 = 1e-6;
 /// Kind: tuned; measured on: not recorded.
 const MORE_STEPS: usize = 50;
 
+/// Most of these steps, to which runs grow that find nothing: as many families of modes of a wheel need, each of which lies within a share
+/// of its distance from the shift.
+/// Kind: cap.
+const MOST_MORE_STEPS: usize = 400;
+
 /// Largest number of runs for a goal.
 /// Kind: cap.
 const RUNS: usize = 80;
@@ -174,7 +179,7 @@ impl<'a> NearShift<'a> {
     /// `NoConvergence`, `Singular`, `OutOfMemory`; `StoppedByCaller`.
     pub fn search(&mut self, goal: Goal) -> Result<Near> {
         let order = 2 * self.mass.rows;
-        let mut start = None;
+        let (mut start, mut more) = (None, MORE_STEPS);
         for _ in 0..RUNS {
             if self.kept.len() >= order {
                 return self.near(f64::INFINITY);
@@ -186,7 +191,10 @@ impl<'a> NearShift<'a> {
                 Goal::Within(..) => true,
             };
             let is_new = start.is_none();
-            let end = self.run(goal, start)?;
+            let end = self.run(goal, start, more)?;
+            if !end.is_settled && end.largest == 0.0 {
+                more = (more + more / 2).min(MOST_MORE_STEPS);
+            }
             if end.is_empty && is_new {
                 return self.near(f64::INFINITY);
             }
@@ -216,7 +224,8 @@ impl<'a> NearShift<'a> {
         }
     }
 
-    fn run(&mut self, goal: Goal, start: Option<Vec<Complex64>>) -> Result<End> {
+    /// A run from a vector, or a new one, with `more` steps beyond those for the number of eigenvalues.
+    fn run(&mut self, goal: Goal, start: Option<Vec<Complex64>>, more: usize) -> Result<End> {
         let order = 2 * self.mass.rows;
         let (level, wanted) = match goal {
             Goal::Nearest(count) => (self.level(goal), count.saturating_sub(self.kept.len()).max(1)),
@@ -240,7 +249,7 @@ impl<'a> NearShift<'a> {
         if size(&v) <= NO_MORE * before || before == 0.0 {
             return Ok(settled);
         }
-        let steps = (2 * wanted + MORE_STEPS).min(order - self.kept.len());
+        let steps = (2 * wanted + more).min(order - self.kept.len());
         let mut next_look = (wanted + 10).min(steps);
         for step in 1..=steps {
             self.interrupt.part(Phase::Modes, step, steps)?;
