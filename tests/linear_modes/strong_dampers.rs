@@ -1,6 +1,7 @@
 //! Damped modes above the size that is solved densely: strong dampers at few places and Coriolis forces, against eigenvalues of the
 //! state-space matrix and of chains in closed form. None may be missing, none listed twice.
 
+use crate::common::models::{diagonal, tridiagonal, unit_chain};
 use hbvib::{ContactState, Hooks, LinearContacts, MatrixKind, MatrixView, Model, Speed, campbell, damped_modes};
 use nalgebra::DMatrix;
 use num_complex::Complex64;
@@ -270,4 +271,37 @@ fn a_diagram_keeps_the_other_speeds_where_one_has_no_modes() {
     );
     let error = campbell(&model, &[1.0], at, &[1], &mut Hooks::default()).unwrap_err();
     assert!(error.message().contains("singular"), "{error:?}");
+}
+
+/// Structural damping gives a frequency to motions that strong dampers hold; whatever the number of modes asked for, they are those of all
+/// eigenvalues.
+#[test]
+fn held_motions_with_structural_damping_are_found_at_any_count() {
+    for (n, dampers) in [
+        (102, [100.0, 0.0, 0.0]),
+        (102, [300.0, 390.0, 0.0]),
+        (202, [100.0, 130.0, 160.0]),
+        (202, [30.0, 0.0, 0.0]),
+    ] {
+        let k = 0.1 * (n * n) as f64;
+        let mut built = unit_chain(n);
+        let mut damping = vec![0.0; n];
+        for (i, c) in dampers.into_iter().enumerate() {
+            damping[(7 + 13 * i) % n] += c;
+        }
+        built = built
+            .stiffness(&tridiagonal(&vec![2.0 * k; n], &vec![-k; n - 1]))
+            .damping(&diagonal(&damping))
+            .loss_factor(0.01);
+        let model = built.build();
+        let modes = |count: usize| damped_modes(&model, 0, LinearContacts::Free, count, &mut Hooks::default()).unwrap();
+        let all = modes(n / 2);
+        for count in [1, 4, 16] {
+            let found = modes(count);
+            for k in 0..count {
+                let off = (found.eigenvalue[k] - all.eigenvalue[k]).norm();
+                assert!(off < 1e-8 * all.eigenvalue[k].norm(), "{n}, {dampers:?}, {count}: {k}");
+            }
+        }
+    }
 }

@@ -72,11 +72,19 @@ pub fn lowest_by_search(
     };
     let covered = first.covered();
     for side in [-1.0, 1.0] {
-        if is_bounded(problem, hermitian, side, covered, interrupt)? {
-            continue;
-        }
         let mut inside = covered;
-        while inside < FARTHEST * first.height {
+        loop {
+            let strip = (inside, first.height);
+            if is_bounded(problem, hermitian, side, strip, interrupt)? {
+                break;
+            }
+            if inside >= FARTHEST * first.height {
+                // Structural damping gives a frequency to motions that strong dampers hold.
+                if problem.mass.rows <= DENSE_IF_HARD && structural(problem, hermitian)?.is_some() {
+                    return Ok(None);
+                }
+                break;
+            }
             let outside = WIDER * inside;
             let Some(found) = aside(problem, &first, side, inside, outside, interrupt)? else {
                 if problem.mass.rows <= DENSE_IF_HARD {
@@ -294,23 +302,37 @@ fn aside(
     Ok(Some(modes))
 }
 
-/// Whether no mode lies further from the imaginary axis than `covered`, on the left or on the right.
+/// The matrix D of K = K_h + iD with Hermitian parts; `None` where it is rounding.
+fn structural(problem: &Quadratic<'_>, hermitian: &Csc) -> Result<Option<Csc>> {
+    let terms = [
+        (-Complex64::I, problem.stiffness, Form::Plain),
+        (Complex64::I, hermitian, Form::Plain),
+    ];
+    let found = Csc::sum(problem.mass.rows, &terms)?;
+    Ok((found.max_abs() > f64::EPSILON * hermitian.max_abs()).then_some(found))
+}
+
+/// Whether no mode of a frequency up to `height` lies further from the imaginary axis than `covered`, on the left or on the right.
 ///
-/// A mode x with m = xᴴMx, c = xᴴCx of the Hermitian part and k = xᴴKx > 0 has −c/m ≤ Re λ ≤ 0 if c ≥ 0, and Re λ ≤ −c/m if not; one of
-/// negative k grows by √(−k/m) or less.
+/// A mode λ = a + ib with motion x, m = xᴴMx, c = xᴴCx of the Hermitian part and k + id = xᴴKx, k > 0, has
+///
+/// > c/m = −a − (a k + b d)/(|λ|² m)
+///
+/// by the real part of λ̄ times its equation. Where |d| is below k covered/height the last term has the sign of the first: −c/m ≤ a ≤ 0 if
+/// c ≥ 0, and a ≤ −c/m if not. A mode of negative k grows by √(−k/m) or less, without D.
 fn is_bounded(
     problem: &Quadratic<'_>,
     hermitian: &Csc,
     side: f64,
-    covered: f64,
+    (covered, height): (f64, f64),
     interrupt: &Interrupt<'_>,
 ) -> Result<bool> {
     let n = problem.mass.rows;
     let sum =
         |a: (f64, &Csc), b: (f64, &Csc)| Csc::sum(n, &[(a.0.into(), a.1, Form::Plain), (b.0.into(), b.1, Form::Plain)]);
-    // Forces of the skew part of K are those of structural damping or circulatory.
-    let skew = sum((1.0, problem.stiffness), (-1.0, hermitian))?;
-    if skew.max_abs() > f64::EPSILON * hermitian.max_abs() {
+    if let Some(structural) = structural(problem, hermitian)?
+        && !resists_all_motion(&sum((covered / height, hermitian), (side, &structural))?, interrupt)?
+    {
         return Ok(false);
     }
     let transposed = Csc::sum(n, &[(Complex64::ONE, problem.damping, Form::Transposed)])?;
