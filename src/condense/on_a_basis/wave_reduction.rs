@@ -18,7 +18,9 @@ use crate::linalg::iterative::block_krylov::SparseVector;
 use crate::model::Model;
 use crate::model::few_motions::reduced_wave::{ReducedView, ReducedWave, WaveKey};
 use crate::model::matrices::sector_motion::MOTION_TERMS;
+use crate::model::matrices::speed::Speed;
 use crate::model::matrices::spring::Row;
+use crate::model::matrices::structure::MatrixKind;
 use crate::model::matrices::wave::Wave;
 use crate::options::Range;
 use crate::options::{Flexibility, SolverOptions};
@@ -112,7 +114,7 @@ pub(crate) fn reduced_blocks(
     // A basis knows mass, viscous damping, stiffness and its loss factor, and forces of one size.
     if structure.has_structural_matrix()
         || request.loss_factor.is_none()
-        || structure.is_rotating()
+        || (structure.is_rotating() && !may_rotate(request))
         || structure.has_aero()
         || model.excitation().has_unbalance()
     {
@@ -175,6 +177,16 @@ pub(crate) fn reduced_blocks(
     Ok(Some((blocks, worst.total)))
 }
 
+/// Whether gyroscopic forces are a damping matrix that a basis knows: the speed is fixed and stiffens nothing. Up to the size of all
+/// modes their poles, or factors, take less time, and beside modal damping factors with a term of low rank.
+fn may_rotate(request: &Request<'_>) -> bool {
+    let structure = request.model.structure();
+    matches!(structure.speed, Speed::Fixed(_))
+        && !structure.has(MatrixKind::StiffnessSpeed2)
+        && !structure.has_modal_damping()
+        && (request.is_forced() || request.ndof() > ALL_UP_TO)
+}
+
 /// Largest allowed error by motions that a basis lacks. Where all modes are an alternative, the basis must be as
 /// exact as they are.
 fn limit(request: &Request<'_>) -> f64 {
@@ -218,7 +230,7 @@ fn declined<T>(forced: bool) -> Result<Option<T>> {
     fail!(
         Unsupported,
         "flexibility = krylov needs Hermitian stiffness and mass, a mass by which K + shift M is positive definite, and neither \
-         structural matrix, aerodynamic influence, a speed of rotation or unbalance"
+         structural matrix, aerodynamic influence, unbalance, a speed tied to the frequency nor one that stiffens"
     )
 }
 
@@ -279,6 +291,7 @@ fn wave_of(
         frequency: reference_frequency(request, group),
         instead_of: instead_of(request, group),
         memory_limit: request.options.memory_limit,
+        may_sample: request.ndof() <= WAVE_REDUCTION_DIRECT_UP_TO,
     };
     let Some((wave, error)) = prepare(&matrices, inputs, (limit, most), error, interrupt)? else {
         return Ok(None);
