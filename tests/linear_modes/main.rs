@@ -6,6 +6,7 @@ mod common;
 mod damped_mode;
 mod families;
 mod free_bodies;
+mod modal_ratios;
 mod natural_frequencies;
 mod penalties;
 mod rotating_modes;

@@ -10,6 +10,7 @@ use crate::model::Model;
 use crate::model::few_motions::reduced_wave::WaveKey;
 use crate::model::matrices::modal_directions::split_damping;
 use crate::model::matrices::structure::MatrixKind;
+use crate::model::matrices::wave::Wave;
 use crate::model::matrices::wave_matrix::WaveMatrix;
 use num_complex::Complex64;
 
@@ -70,7 +71,8 @@ impl WaveMatrices<'_> {
 
     /// Damping of the wave without that of few modes, and the directions of these.
     fn split_damping(&self, interrupt: &Interrupt<'_>) -> Result<(WaveMatrix<'_>, Vec<SparseVector>)> {
-        let Some((mut rest, mut modal)) = split_damping(self.model.structure(), self.number, interrupt)? else {
+        let wave = Wave::Harmonic(self.number);
+        let Some((mut rest, mut modal)) = split_damping(self.model.structure(), wave, interrupt)? else {
             return Ok((self.matrix(MatrixKind::Damping)?, Vec::new()));
         };
         if self.conjugated {
