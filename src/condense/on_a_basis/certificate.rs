@@ -176,7 +176,7 @@ pub(crate) fn certificate(
 }
 
 /// Whether the basis consists of samples, the rests of all whose images are known: a certificate of all its frequencies tells the next one.
-fn is_sampled(view: &ReducedView) -> bool {
+pub(crate) fn is_sampled(view: &ReducedView) -> bool {
     matches!(view.pencil().damping, WaveDamping::General(_, None)) && view.pencil().remainder.last == 0
 }
 

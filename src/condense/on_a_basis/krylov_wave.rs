@@ -122,9 +122,9 @@ fn build<T: Entry>(
     (basis, back): Wrapping<T>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<(Arc<ReducedWave>, Certificate)>> {
-    let mut samples = match matrices.may_sample {
-        true => Samples::new(&assembled, inputs.len())?,
-        false => None,
+    let mut samples = match matrices.sampled_with {
+        Some(loss_factor) => Samples::new(&assembled, loss_factor, inputs.len())?,
+        None => None,
     };
     let Some((mut krylov, prepared)) = started::<T>(matrices, assembled, &inputs, interrupt)? else {
         return Ok(None);
@@ -194,7 +194,9 @@ fn build<T: Entry>(
             None => grown(&mut krylov, room(paying), (&residuals, limit), interrupt)?,
         };
         if !has_grown {
-            wave.refused_up_to = if found.basis > limit { most } else { 0 };
+            // Samples of a single frequency end with it, and those of another one go on.
+            let is_refused = found.basis > limit && (complete || samples.is_none());
+            wave.refused_up_to = if is_refused { most } else { 0 };
             wave.pencil = exact_pencil(&mut krylov, &prepared, interrupt)?;
             let mut columns = krylov.take_basis();
             columns.shrink_to_fit();
@@ -209,7 +211,7 @@ fn build<T: Entry>(
 }
 
 /// The most columns with which more blocks are worth it, which one factorisation tells: none, any number, or those that pay under general
-/// damping, which extends a basis beyond what the natural frequencies tell. It takes the memory of the factor of the basis, which is
+/// damping, whose frequencies are dearer. It takes the memory of the factor of the basis, which is
 /// made again. Any number where the natural frequencies cannot be counted.
 fn worth_columns<T: Entry>(
     krylov: &mut BlockKrylov<T>,
@@ -232,7 +234,7 @@ fn worth_columns<T: Entry>(
     };
     Ok(match &prepared.damping {
         _ if !is_worth_its_columns(outlook, factors, below, prepared.n) => 0,
-        OfWave::General => paying_columns(factors, below.entries, prepared.n),
+        OfWave::General => paying_columns(outlook, factors, below, prepared.n),
         _ => usize::MAX,
     })
 }

@@ -17,14 +17,16 @@ const CONTEXT: &str = "the reduced structure";
 
 /// K, C and M of a wave on one pattern, with factors of their sums.
 pub(crate) struct Samples {
+    loss_factor: f64,
     factor: Factor,
     z: Csc,
     parts: [Vec<Complex64>; 3],
 }
 
 impl Samples {
-    /// Memory for the matrices of a wave and `inputs` forces; `None` where its damping extends no basis.
-    pub fn new(wave: &Assembled<'_>, inputs: usize) -> Result<Option<Self>> {
+    /// Memory for the matrices of a wave, with the loss factor of its stiffness, and `inputs` forces; `None` where its damping extends no
+    /// basis.
+    pub fn new(wave: &Assembled<'_>, loss_factor: f64, inputs: usize) -> Result<Option<Self>> {
         let Damping::General(damping) = &wave.damping else {
             return Ok(None);
         };
@@ -33,6 +35,7 @@ impl Samples {
         let own = Csc::sum(n, &[&wave.stiffness, &wave.mass].map(|a| (none, a, Form::Plain)))?;
         let z = Csc::sum(n, &[&own, damping].map(|a| (none, a, Form::Plain)))?;
         Ok(Some(Self {
+            loss_factor,
             factor: Factor::new(&z, inputs)?,
             parts: [
                 aligned(&wave.stiffness, &z)?,
@@ -56,8 +59,9 @@ impl Samples {
     ) -> Result<Option<Vec<T>>> {
         let n = self.z.cols.max(1);
         let [stiffness, damping, mass] = &self.parts;
+        let lossy = Complex64::new(1.0, self.loss_factor * nu.signum());
         for (at, z) in self.z.values.iter_mut().enumerate() {
-            *z = stiffness[at] + Complex64::new(0.0, nu) * damping[at] - nu * nu * mass[at];
+            *z = lossy * stiffness[at] + Complex64::new(0.0, nu) * damping[at] - nu * nu * mass[at];
         }
         let mut x = try_vec(n * inputs.len(), Complex64::ZERO, CONTEXT)?;
         for (column, input) in x.chunks_exact_mut(n).zip(inputs) {

@@ -30,8 +30,8 @@ pub(crate) struct WaveMatrices<'a> {
     /// Factors that the basis competes with; `None` where a basis is tried in any case.
     pub instead_of: Option<Factors>,
     pub memory_limit: usize,
-    /// Whether complex factors of the wave are small enough to solve for samples of its motion.
-    pub may_sample: bool,
+    /// Loss factor of the stiffness in samples of the motion; `None` where complex factors of the wave are too large for samples.
+    pub sampled_with: Option<f64>,
 }
 
 /// Size and use of the factors that a basis competes with.

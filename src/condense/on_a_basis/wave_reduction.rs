@@ -8,7 +8,7 @@ use crate::condense::HarmonicBlock;
 use crate::condense::blocks::contact_classes::ContactClasses;
 use crate::condense::by_modes::wave_cache::{ALL_UP_TO, are_all_modes_wanted};
 use crate::condense::on_a_basis::basis_outlook::{SweepTables, USUAL_COLUMNS};
-use crate::condense::on_a_basis::certificate::{Certificate, certificate};
+use crate::condense::on_a_basis::certificate::{Certificate, certificate, is_sampled};
 use crate::condense::on_a_basis::krylov_wave::{MOST_BLOCKS, MOST_COLUMNS, prepare};
 use crate::condense::on_a_basis::reduced_block::reduced_block;
 use crate::condense::on_a_basis::wave_matrices::{Factors, WaveMatrices};
@@ -291,7 +291,7 @@ fn wave_of(
         frequency: reference_frequency(request, group),
         instead_of: instead_of(request, group),
         memory_limit: request.options.memory_limit,
-        may_sample: request.ndof() <= WAVE_REDUCTION_DIRECT_UP_TO,
+        sampled_with: (request.ndof() <= WAVE_REDUCTION_DIRECT_UP_TO).then(|| request.loss_factor.unwrap_or(0.0)),
     };
     let Some((wave, error)) = prepare(&matrices, inputs, (limit, most), error, interrupt)? else {
         return Ok(None);
@@ -341,13 +341,14 @@ fn certificate_of(
     let mut worst = Certificate::default();
     // The highest harmonic needs the largest basis.
     for &(i, conjugated) in group.members.iter().rev() {
-        if worst.basis > enough {
-            break;
-        }
         let view = ReducedView {
             wave: Arc::clone(wave),
             conjugated,
         };
+        // A second sample of one frequency adds nothing, so that the worst of all harmonics has the next one.
+        if worst.basis > enough && !(request.sweep.is_single() && is_sampled(&view)) {
+            break;
+        }
         let number = request.numbers[i];
         let at = (view.clone(), 0, request.loss_factor.unwrap_or(0.0));
         let block = reduced_block(request.model, number, request.contacts, |c| kappa(c, number), at)?;
