@@ -36,6 +36,10 @@ const RESONANCES: usize = 6;
 /// up to five times the one at those that are checked.
 const CHECKED: usize = 16;
 
+/// Step between the places of samples next to a frequency, modulo 1: multiples of the golden section lie apart.
+/// Kind: fixed.
+const PLACES_OF_SAMPLES: f64 = 0.618_033_988_749_894_8;
+
 /// Steps of the power iteration for ‖Z⁻¹‖, whose size alone matters.
 /// Kind: tuned; measured on: not recorded.
 const STEPS: usize = 4;
@@ -182,8 +186,7 @@ pub(crate) fn is_sampled(view: &ReducedView) -> bool {
 
 /// A number between −1/2 and 1/2, another one for each order of a basis.
 fn beside(order: usize) -> f64 {
-    const GOLDEN_SECTION: f64 = 0.618_033_988_749_894_8;
-    (order as f64 * GOLDEN_SECTION).fract() - 0.5
+    (order as f64 * PLACES_OF_SAMPLES).fract() - 0.5
 }
 
 /// Residual of a motion q of the coordinates at ν = hω, as coefficients over the images that the basis lacks.
@@ -321,7 +324,7 @@ fn resonances(
     for (omega, mu) in natural.iter_mut().zip(found.iter().filter(|&&mu| mu > 0.0)) {
         *omega = (1.0 / mu - shift).max(0.0).sqrt();
     }
-    if let Some(gyroscopic) = gyroscopic(block, (&l, shift), (&found, &shapes), interrupt)? {
+    if let Some(gyroscopic) = gyroscopic(block, &l, shift, &found, &shapes, interrupt)? {
         natural = gyroscopic;
     }
     let mut within = Vec::new();
@@ -344,8 +347,10 @@ fn resonances(
 /// Hermitian matrix of the blocks −H, μ^½, μ^½ and 0.
 fn gyroscopic(
     block: &HarmonicBlock,
-    (l, shift): (&[Complex64], f64),
-    (values, shapes): (&[f64], &[Complex64]),
+    l: &[Complex64],
+    shift: f64,
+    values: &[f64],
+    shapes: &[Complex64],
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<Vec<f64>>> {
     let n = block.matrices.reference.rows;

@@ -5,7 +5,7 @@ use crate::condense::by_modes::few_directions::FewDirections;
 use crate::condense::on_a_basis::basis_outlook::{Outlook, is_worth_its_columns, paying_columns};
 use crate::condense::on_a_basis::certificate::Certificate;
 use crate::condense::on_a_basis::residual_directions::residual_directions;
-use crate::condense::on_a_basis::samples::Samples;
+use crate::condense::on_a_basis::sampled_motions::Samples;
 use crate::condense::on_a_basis::wave_matrices::{Assembled, Damping, WaveMatrices};
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
