@@ -86,9 +86,12 @@ impl Outlook {
 /// The most columns of a basis under general damping that take no longer than factors of `n` degrees of freedom: a frequency takes a sum
 /// over the poles of the basis, once computed, where these are few enough, or dense factors. None where it needs more.
 pub(crate) fn paying_columns(outlook: Outlook, factors: &Factors, below: Below, n: usize) -> usize {
+    // A sample of one frequency takes the factors that it would replace.
+    if !factors.along_range {
+        return 0;
+    }
     let of_one = of_factors(below.entries, n);
-    let times = if factors.along_range { ALONG_RANGE } else { AT_ONE };
-    let of_poles = times * factors.harmonics as f64 * of_one / WORK_OF_ALL_POLES;
+    let of_poles = ALONG_RANGE * factors.harmonics as f64 * of_one / WORK_OF_ALL_POLES;
     let by_poles = 0.5 * of_poles.min(MOST_POLE_WORK).cbrt();
     // A dense triangle of order r has r²/2 entries.
     let by_dense_factors = (4.0 * of_one).cbrt();

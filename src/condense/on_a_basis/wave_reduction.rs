@@ -184,7 +184,7 @@ fn may_rotate(request: &Request<'_>) -> bool {
     matches!(structure.speed, Speed::Fixed(_))
         && !structure.has(MatrixKind::StiffnessSpeed2)
         && !structure.has_modal_damping()
-        && (request.is_forced() || request.ndof() > ALL_UP_TO)
+        && (request.is_forced() || (request.ndof() > ALL_UP_TO && !request.sweep.is_single()))
 }
 
 /// Largest allowed error by motions that a basis lacks. Where all modes are an alternative, the basis must be as
