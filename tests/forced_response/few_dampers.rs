@@ -4,7 +4,7 @@
 use crate::common::{at_dof, models, omega_range};
 use crate::reduced_structures::{plate, point};
 use hbvib::internals::FlexibilityWay::Modes;
-use hbvib::{Flexibility, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, forced_response};
+use hbvib::{Flexibility, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, Speed, forced_response};
 
 /// Damping of a plate.
 #[derive(Clone, Copy, Debug)]
@@ -17,6 +17,8 @@ enum Damping {
     Coupled,
     /// A dashpot of its own on each degree of freedom.
     Everywhere,
+    /// None that couples modes but gyroscopic forces.
+    Gyroscopic,
 }
 
 /// A damping of the i-th degree of freedom that is no multiple of its mass or stiffness.
@@ -42,6 +44,7 @@ fn damped(side: usize, damping: Damping) -> Model {
             add(20, 90, 0.05);
             add(90, 20, 0.05);
         }
+        Damping::Gyroscopic => {}
         Damping::Everywhere => (0..n).for_each(|i| add(i, i, dashpot(i))),
         Damping::Modes => {
             let ratios: Vec<f64> = (0..12).map(|r| 0.01 + 0.002 * f64::from(r)).collect();
@@ -109,7 +112,7 @@ fn dampers_of_few_directions_respond_as_by_factors() {
     }
 }
 
-/// Poles, factors, and a basis that grows beyond what factors take: a chain of 1,100 masses needs hundreds of columns.
+/// Poles, factors and bases of samples.
 #[test]
 fn a_dashpot_on_each_mass_responds_as_by_factors() {
     for side in [10, 20, 22, 26] {
@@ -158,5 +161,39 @@ fn dampers_of_few_directions_have_sums_for_estimates() {
             (found - alone).norm() < 2e-2 * alone.norm(),
             "{side}: {found} for {alone}"
         );
+    }
+}
+
+/// Gyroscopic forces on a chain, whose waves travel with other speeds than without: bases of samples, between their frequencies and at
+/// the resonances of the first and the third harmonic.
+#[test]
+fn gyroscopic_forces_respond_as_by_factors() {
+    for (n, flexibility) in [
+        (33, Flexibility::Krylov),
+        (101, Flexibility::Krylov),
+        (200, Flexibility::Krylov),
+        (610, Flexibility::Automatic),
+        (1400, Flexibility::Automatic),
+    ] {
+        let mut g = vec![0.0; n * n];
+        for i in 1..n {
+            (g[i * n + i - 1], g[(i - 1) * n + i]) = (0.02, -0.02);
+        }
+        let lowest = std::f64::consts::PI / (n + 1) as f64;
+        let mut model = models::unit_chain(n)
+            .rayleigh(0.02 * lowest, 0.0)
+            .slider(n / 2, 1.0, 0.9, 1.0)
+            .force(n / 3, 1, 0.1)
+            .build();
+        model
+            .set_matrix(MatrixKind::Gyroscopic, &MatrixView::dense(n, &g))
+            .unwrap();
+        model.set_speed(Speed::Fixed(1.0)).unwrap();
+        let solver = SolverOptions {
+            flexibility,
+            ..at_dof(n / 4, crate::common::harmonics(3))
+        };
+        let frequencies = [0.8, 1.02, 1.97, 3.4].map(|factor| factor * lowest);
+        compare_within(&model, frequencies, &solver, (n, Damping::Gyroscopic));
     }
 }

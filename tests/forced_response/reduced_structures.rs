@@ -4,7 +4,7 @@ use crate::common::models::{self, unit_chain};
 use crate::common::omega_range;
 use hbvib::{
     Branch, Contact, Flexibility, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Part, Phase, PhaseReport,
-    SolverOptions, Spring, Status, forced_response,
+    SolverOptions, Speed, Spring, Status, forced_response,
 };
 use num_complex::Complex64;
 use std::cell::Cell;
@@ -176,6 +176,31 @@ fn structures(seed: u64) -> Vec<(&'static str, Model)> {
         model.set_rayleigh(0.01, 2e-4).unwrap();
         found.push(("complex stiffness", model));
     }
+    for sectors in [1, 24] {
+        let mut model = if sectors == 1 {
+            plain(&k, &m)
+        } else {
+            let mut model = Model::cyclic(N, sectors).unwrap();
+            model.set_wave(2);
+            set(&mut model, MatrixKind::Stiffness, &k);
+            set(&mut model, MatrixKind::Mass, &m);
+            let mut to_next = vec![0.0; N * N];
+            (to_next[3], to_next[55 * N + 4]) = (-11.0, -7.0);
+            let view = MatrixView::dense(N, &to_next).part(Part::General);
+            model.set_coupling(MatrixKind::Stiffness, &view).unwrap();
+            model
+        };
+        let mut gyroscopic = vec![0.0; N * N];
+        for i in 1..N {
+            let g = 0.05 * (1 + i % 4) as f64;
+            (gyroscopic[i * N + i - 1], gyroscopic[(i - 1) * N + i]) = (g, -g);
+        }
+        let view = MatrixView::dense(N, &gyroscopic).part(Part::General);
+        model.set_matrix(MatrixKind::Gyroscopic, &view).unwrap();
+        model.set_speed(Speed::Fixed(1.0)).unwrap();
+        model.set_rayleigh(0.05, 1e-4).unwrap();
+        found.push(("gyroscopic forces", model));
+    }
     for (_, model) in &mut found {
         let offset = i64::from(model.structure().sectors() > 1);
         with_contacts(model, offset);
@@ -221,7 +246,9 @@ fn every_kind_of_structure_responds_as_by_factors() {
                 let reduced = point(&model, &options(Flexibility::Krylov, harmonics), omega);
                 let reduction = reduced.reduction();
                 assert!(direct.reduction().basis == 0 && reduction.basis > 0 && reduction.basis <= N);
-                assert!(reduction.certificate <= 1e-8, "{name}: {:e}", reduction.certificate);
+                // The residual at a sample is a sum of squares that cancel, of which rounding leaves the root.
+                let told = if name == "gyroscopic forces" { 1e-7 } else { 1e-8 };
+                assert!(reduction.certificate <= told, "{name}: {:e}", reduction.certificate);
                 let (x, exact) = (motion(&reduced), motion(&direct));
                 let off: Vec<Complex64> = x.iter().zip(&exact).map(|(a, b)| a - b).collect();
                 let error = size(&off) / size(&exact);

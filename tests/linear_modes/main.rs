@@ -7,6 +7,7 @@ mod blade_families;
 mod damped_mode;
 mod families;
 mod free_bodies;
+mod modal_ratios;
 mod natural_frequencies;
 mod penalties;
 mod rotating_modes;

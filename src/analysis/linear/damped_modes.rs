@@ -5,15 +5,16 @@ use crate::analysis::linear::linear_contacts::LinearContacts;
 use crate::error::{Result, fail, try_extend, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
-use crate::linalg::factors::factor::Factor;
 use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::Model;
+use crate::model::matrices::modal_directions::split_damping;
 use crate::model::matrices::speed::Speed;
 use crate::model::matrices::structure::MatrixKind;
 use crate::model::matrices::wave::Wave;
 use crate::model::natural_modes::damped_mode::SHIFT_OFFSET;
 use crate::model::natural_modes::linear_modes::ContactState;
 use crate::model::natural_modes::quadratic_problem::Quadratic;
+use crate::model::natural_modes::shifted_factors::ShiftedFactors;
 use num_complex::Complex64;
 
 /// Relative distance of two eigenvalues that count as one.
@@ -128,12 +129,17 @@ pub(crate) fn of_wave(
     interrupt: &Interrupt<'_>,
 ) -> Result<DampedModes> {
     let structure = model.structure();
-    let matrices = WaveMatrices::new(model, diameter, contacts)?;
+    let wave = Wave::Diameter(diameter);
+    let (damping, modal) = match split_damping(structure, wave, interrupt)? {
+        Some(found) => found,
+        None => (structure.of_wave(MatrixKind::Damping, wave)?, Vec::new()),
+    };
+    let matrices = WaveMatrices::new(model, wave, contacts, damping)?;
     let problem = Quadratic {
         mass: &matrices.mass,
         damping: &matrices.damping,
         stiffness: &matrices.stiffness,
-        modal: &[],
+        modal: &modal,
     };
     // One more shows whether the last shares its frequency.
     let mut pairs = problem.lowest(count.saturating_add(1), interrupt)?;
@@ -167,8 +173,12 @@ pub(crate) fn of_wave(
 /// Whether the waves d and −d have equal eigenvalues: each matrix of one wave is the transpose of the matrix of the
 /// other. The directions of their modes are then opposite.
 pub(crate) fn has_equal_senses(model: &Model, diameter: i64, contacts: ContactState<'_>) -> Result<bool> {
-    let one = WaveMatrices::new(model, diameter, contacts)?;
-    let other = WaveMatrices::new(model, -diameter, contacts)?;
+    let of_diameter = |diameter: i64| {
+        let wave = Wave::Diameter(diameter);
+        let damping = model.structure().of_wave(MatrixKind::Damping, wave)?;
+        WaveMatrices::new(model, wave, contacts, damping)
+    };
+    let (one, other) = (of_diameter(diameter)?, of_diameter(-diameter)?);
     let pairs = [
         (&one.mass, &other.mass),
         (&one.damping, &other.damping),
@@ -191,9 +201,8 @@ struct WaveMatrices {
 }
 
 impl WaveMatrices {
-    fn new(model: &Model, diameter: i64, contacts: ContactState<'_>) -> Result<Self> {
+    fn new(model: &Model, wave: Wave, contacts: ContactState<'_>, damping: Csc) -> Result<Self> {
         let structure = model.structure();
-        let wave = Wave::Diameter(diameter);
         let mass = structure.of_wave(MatrixKind::Mass, wave)?;
         let structural = structure.of_wave(MatrixKind::Structural, wave)?;
         let sprung = model.stiffness_at_small_motion(wave, contacts)?;
@@ -202,7 +211,7 @@ impl WaveMatrices {
             (Complex64::I, &structural, Form::Plain),
         ];
         Ok(Self {
-            damping: structure.of_wave(MatrixKind::Damping, wave)?,
+            damping,
             stiffness: Csc::sum(mass.rows, &terms)?,
             mass,
         })
@@ -231,16 +240,14 @@ fn direction(
     x: &[Complex64],
     interrupt: &Interrupt<'_>,
 ) -> Result<i64> {
-    let shifted = problem.matrix(eigenvalue * (1.0 + SHIFT_OFFSET))?;
-    let mut factor = Factor::new(&shifted, 1)?;
-    factor.factor(&shifted, interrupt)?;
+    let mut factors = ShiftedFactors::new(problem, eigenvalue * (1.0 + SHIFT_OFFSET), 1, interrupt)?;
     // yᴴ A = 0 is Aᵀ conj(y) = 0.
     let mut left = problem.mass.times(x, CONTEXT)?;
     for z in &mut left {
         *z = z.conj();
     }
     for _ in 0..2 {
-        factor.solve(&mut left, true, interrupt)?;
+        factors.solve(&mut left, true, interrupt)?;
         let size = left.iter().fold(0.0_f64, |m, z| m.max(z.norm()));
         for z in &mut left {
             *z /= size;

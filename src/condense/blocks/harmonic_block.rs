@@ -358,7 +358,7 @@ pub(crate) fn harmonic_block(
     let split = if !structure.has_modal_damping() || is_dense(&stiffness)? {
         None
     } else {
-        split_damping(structure, number, interrupt)?
+        split_damping(structure, Wave::Harmonic(number), interrupt)?
     };
     let (damping, modal) = match split {
         Some((rest, modal)) => (rest, (!modal.is_empty()).then(|| Arc::new(modal))),

@@ -63,8 +63,7 @@ pub(crate) struct Outlook {
 /// Whether a basis of a structure of `n` degrees of freedom is larger than its first blocks with gain, by the count `below` of
 /// natural frequencies up to the highest one that it serves: its columns suffice, and take less time than the `factors`.
 pub(crate) fn is_worth_its_columns(outlook: Outlook, factors: &Factors, below: Below, n: usize) -> bool {
-    let (per_input, besides) = USUAL_COLUMNS;
-    let columns = OF_RESONANCE * below.count + per_input * outlook.inputs + besides + outlook.beside;
+    let columns = outlook.columns(below);
     if columns > outlook.most {
         return false;
     }
@@ -76,16 +75,28 @@ pub(crate) fn is_worth_its_columns(outlook: Outlook, factors: &Factors, below: B
     OF_COLUMNS * (columns as f64).powi(3) <= times * factors.harmonics as f64 * of_one
 }
 
-/// The most columns of a basis under general damping that take no longer than factors whose triangle has `entries` entries: a frequency
-/// takes a sum over the poles of the basis, once computed, where these are few enough, or dense factors.
-pub(crate) fn paying_columns(factors: &Factors, entries: usize, n: usize) -> usize {
-    let of_one = of_factors(entries, n);
-    let times = if factors.along_range { ALONG_RANGE } else { AT_ONE };
-    let of_poles = times * factors.harmonics as f64 * of_one / WORK_OF_ALL_POLES;
+impl Outlook {
+    /// Columns that a basis needs, by the count of natural frequencies up to the highest one that it serves.
+    fn columns(self, below: Below) -> usize {
+        let (per_input, besides) = USUAL_COLUMNS;
+        OF_RESONANCE * below.count + per_input * self.inputs + besides + self.beside
+    }
+}
+
+/// The most columns of a basis under general damping that take no longer than factors of `n` degrees of freedom: a frequency takes a sum
+/// over the poles of the basis, once computed, where these are few enough, or dense factors. None where it needs more.
+pub(crate) fn paying_columns(outlook: Outlook, factors: &Factors, below: Below, n: usize) -> usize {
+    // A sample of one frequency takes the factors that it would replace.
+    if !factors.along_range {
+        return 0;
+    }
+    let of_one = of_factors(below.entries, n);
+    let of_poles = ALONG_RANGE * factors.harmonics as f64 * of_one / WORK_OF_ALL_POLES;
     let by_poles = 0.5 * of_poles.min(MOST_POLE_WORK).cbrt();
     // A dense triangle of order r has r²/2 entries.
     let by_dense_factors = (4.0 * of_one).cbrt();
-    by_poles.max(by_dense_factors) as usize
+    let most = by_poles.max(by_dense_factors) as usize;
+    if outlook.columns(below) > most { 0 } else { most }
 }
 
 /// Work of complex LU factors of order n whose triangle has `entries` entries.

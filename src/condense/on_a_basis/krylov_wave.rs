@@ -5,6 +5,7 @@ use crate::condense::by_modes::few_directions::FewDirections;
 use crate::condense::on_a_basis::basis_outlook::{Outlook, is_worth_its_columns, paying_columns};
 use crate::condense::on_a_basis::certificate::Certificate;
 use crate::condense::on_a_basis::residual_directions::residual_directions;
+use crate::condense::on_a_basis::sampled_motions::Samples;
 use crate::condense::on_a_basis::wave_matrices::{Assembled, Damping, WaveMatrices};
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
@@ -121,6 +122,10 @@ fn build<T: Entry>(
     (basis, back): Wrapping<T>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<(Arc<ReducedWave>, Certificate)>> {
+    let mut samples = match matrices.sampled_with {
+        Some(loss_factor) => Samples::new(&assembled, loss_factor, inputs.len())?,
+        None => None,
+    };
     let Some((mut krylov, prepared)) = started::<T>(matrices, assembled, &inputs, interrupt)? else {
         return Ok(None);
     };
@@ -155,7 +160,11 @@ fn build<T: Entry>(
         };
         let order = wave.pencil.order();
         let room = |paying: Option<usize>| most.min(paying.unwrap_or(most));
-        let full = order + krylov.next_columns() > room(paying) || krylov.next_columns() == 0;
+        let next = match &samples {
+            Some(_) => wave.inputs.len(),
+            None => krylov.next_columns(),
+        };
+        let full = order + next > room(paying) || next == 0;
         // Rounding is no reason for a larger basis.
         krylov.give_basis(back(wave.basis));
         let mut complete = found.basis <= limit || full;
@@ -167,7 +176,7 @@ fn build<T: Entry>(
             };
             let columns = worth_columns(&mut krylov, matrices, outlook, &prepared, interrupt)?;
             paying = Some(columns);
-            complete = order + krylov.next_columns() > columns;
+            complete = order + next > columns;
         }
         // Directions of residuals that have not helped twice, as at two frequencies, leave the choice to all candidates.
         idle = if found.basis > before / LEAST_GAIN { idle + 1 } else { 0 };
@@ -176,8 +185,18 @@ fn build<T: Entry>(
         }
         before = found.basis;
         // Where images and basis are the same space there is nothing to add.
-        if complete || !grown(&mut krylov, room(paying), (&residuals, limit), interrupt)? {
-            wave.refused_up_to = if found.basis > limit { most } else { 0 };
+        let has_grown = match &mut samples {
+            _ if complete => false,
+            Some(samples) => match samples.motions(found.sample, &wave.inputs, interrupt)? {
+                Some(motions) => krylov.add(motions, interrupt)?,
+                None => false,
+            },
+            None => grown(&mut krylov, room(paying), (&residuals, limit), interrupt)?,
+        };
+        if !has_grown {
+            // Samples of a single frequency end with it, and those of another one go on.
+            let is_refused = found.basis > limit && (complete || samples.is_none());
+            wave.refused_up_to = if is_refused { most } else { 0 };
             wave.pencil = exact_pencil(&mut krylov, &prepared, interrupt)?;
             let mut columns = krylov.take_basis();
             columns.shrink_to_fit();
@@ -192,7 +211,7 @@ fn build<T: Entry>(
 }
 
 /// The most columns with which more blocks are worth it, which one factorisation tells: none, any number, or those that pay under general
-/// damping, which extends a basis beyond what the natural frequencies tell. It takes the memory of the factor of the basis, which is
+/// damping, whose frequencies are dearer. It takes the memory of the factor of the basis, which is
 /// made again. Any number where the natural frequencies cannot be counted.
 fn worth_columns<T: Entry>(
     krylov: &mut BlockKrylov<T>,
@@ -215,7 +234,7 @@ fn worth_columns<T: Entry>(
     };
     Ok(match &prepared.damping {
         _ if !is_worth_its_columns(outlook, factors, below, prepared.n) => 0,
-        OfWave::General => paying_columns(factors, below.entries, prepared.n),
+        OfWave::General => paying_columns(outlook, factors, below, prepared.n),
         _ => usize::MAX,
     })
 }

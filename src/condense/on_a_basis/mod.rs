@@ -6,5 +6,6 @@ pub(crate) mod krylov_wave;
 pub(crate) mod reduced_block;
 pub(crate) mod reduced_resonances;
 pub(crate) mod residual_directions;
+pub(crate) mod sampled_motions;
 pub(crate) mod wave_matrices;
 pub(crate) mod wave_reduction;

@@ -10,6 +10,7 @@ use crate::model::Model;
 use crate::model::few_motions::reduced_wave::WaveKey;
 use crate::model::matrices::modal_directions::split_damping;
 use crate::model::matrices::structure::MatrixKind;
+use crate::model::matrices::wave::Wave;
 use crate::model::matrices::wave_matrix::WaveMatrix;
 use num_complex::Complex64;
 
@@ -29,6 +30,8 @@ pub(crate) struct WaveMatrices<'a> {
     /// Factors that the basis competes with; `None` where a basis is tried in any case.
     pub instead_of: Option<Factors>,
     pub memory_limit: usize,
+    /// Loss factor of the stiffness in samples of the motion; `None` where complex factors of the wave are too large for samples.
+    pub sampled_with: Option<f64>,
 }
 
 /// Size and use of the factors that a basis competes with.
@@ -68,7 +71,8 @@ impl WaveMatrices<'_> {
 
     /// Damping of the wave without that of few modes, and the directions of these.
     fn split_damping(&self, interrupt: &Interrupt<'_>) -> Result<(WaveMatrix<'_>, Vec<SparseVector>)> {
-        let Some((mut rest, mut modal)) = split_damping(self.model.structure(), self.number, interrupt)? else {
+        let wave = Wave::Harmonic(self.number);
+        let Some((mut rest, mut modal)) = split_damping(self.model.structure(), wave, interrupt)? else {
             return Ok((self.matrix(MatrixKind::Damping)?, Vec::new()));
         };
         if self.conjugated {
@@ -96,41 +100,42 @@ impl WaveMatrices<'_> {
                 return Ok(None);
             }
         }
-        let damping = if structure.has(MatrixKind::Damping) || structure.has_modal_damping() {
-            let (c, modal) = self.split_damping(interrupt)?;
-            let (none, n) = (Complex64::ZERO, c.columns());
-            let terms = [&mass, &stiffness, &c].map(|a| (none, a, Form::Plain));
-            let pattern = Csc::sum(n, &terms)?;
-            let aligned = [
-                aligned(&mass, &pattern)?,
-                aligned(&stiffness, &pattern)?,
-                aligned(&c, &pattern)?,
-            ];
-            let aligned = [&aligned[0][..], &aligned[1], &aligned[2]];
-            let proportional = proportional(aligned);
-            let few = match proportional {
-                Some(proportional) => Some(FewDirections {
-                    proportional,
-                    directions: Vec::new(),
-                    middle: None,
-                }),
-                None => few_directions(&pattern, aligned, structure.rayleigh, interrupt)?,
-            };
-            match (proportional, few) {
-                (Some((alpha, beta)), _) if modal.is_empty() => Damping::Proportional(alpha, beta),
-                (_, Some(mut few)) if modal.is_empty() || few.middle.is_none() => {
-                    for direction in modal {
-                        try_push(&mut few.directions, direction, CONTEXT)?;
+        let damping =
+            if structure.has(MatrixKind::Damping) || structure.has_modal_damping() || structure.is_gyroscopic() {
+                let (c, modal) = self.split_damping(interrupt)?;
+                let (none, n) = (Complex64::ZERO, c.columns());
+                let terms = [&mass, &stiffness, &c].map(|a| (none, a, Form::Plain));
+                let pattern = Csc::sum(n, &terms)?;
+                let aligned = [
+                    aligned(&mass, &pattern)?,
+                    aligned(&stiffness, &pattern)?,
+                    aligned(&c, &pattern)?,
+                ];
+                let aligned = [&aligned[0][..], &aligned[1], &aligned[2]];
+                let proportional = proportional(aligned);
+                let few = match proportional {
+                    Some(proportional) => Some(FewDirections {
+                        proportional,
+                        directions: Vec::new(),
+                        middle: None,
+                    }),
+                    None => few_directions(&pattern, aligned, structure.rayleigh, interrupt)?,
+                };
+                match (proportional, few) {
+                    (Some((alpha, beta)), _) if modal.is_empty() => Damping::Proportional(alpha, beta),
+                    (_, Some(mut few)) if modal.is_empty() || few.middle.is_none() => {
+                        for direction in modal {
+                            try_push(&mut few.directions, direction, CONTEXT)?;
+                        }
+                        Damping::Few(few)
                     }
-                    Damping::Few(few)
+                    _ if modal.is_empty() => Damping::General(c.into_csc()?),
+                    _ => Damping::General(self.matrix(MatrixKind::Damping)?.into_csc()?),
                 }
-                _ if modal.is_empty() => Damping::General(c.into_csc()?),
-                _ => Damping::General(self.matrix(MatrixKind::Damping)?.into_csc()?),
-            }
-        } else {
-            let (alpha, beta) = structure.rayleigh;
-            Damping::Proportional(alpha, beta)
-        };
+            } else {
+                let (alpha, beta) = structure.rayleigh;
+                Damping::Proportional(alpha, beta)
+            };
         Ok(Some(Assembled {
             stiffness,
             mass,

@@ -8,7 +8,7 @@ use crate::condense::HarmonicBlock;
 use crate::condense::blocks::contact_classes::ContactClasses;
 use crate::condense::by_modes::wave_cache::{ALL_UP_TO, are_all_modes_wanted};
 use crate::condense::on_a_basis::basis_outlook::{SweepTables, USUAL_COLUMNS};
-use crate::condense::on_a_basis::certificate::{Certificate, certificate};
+use crate::condense::on_a_basis::certificate::{Certificate, certificate, is_sampled};
 use crate::condense::on_a_basis::krylov_wave::{MOST_BLOCKS, MOST_COLUMNS, prepare};
 use crate::condense::on_a_basis::reduced_block::reduced_block;
 use crate::condense::on_a_basis::wave_matrices::{Factors, WaveMatrices};
@@ -18,7 +18,9 @@ use crate::linalg::iterative::block_krylov::SparseVector;
 use crate::model::Model;
 use crate::model::few_motions::reduced_wave::{ReducedView, ReducedWave, WaveKey};
 use crate::model::matrices::sector_motion::MOTION_TERMS;
+use crate::model::matrices::speed::Speed;
 use crate::model::matrices::spring::Row;
+use crate::model::matrices::structure::MatrixKind;
 use crate::model::matrices::wave::Wave;
 use crate::options::Range;
 use crate::options::{Flexibility, SolverOptions};
@@ -112,7 +114,7 @@ pub(crate) fn reduced_blocks(
     // A basis knows mass, viscous damping, stiffness and its loss factor, and forces of one size.
     if structure.has_structural_matrix()
         || request.loss_factor.is_none()
-        || structure.is_rotating()
+        || (structure.is_rotating() && !may_rotate(request))
         || structure.has_aero()
         || model.excitation().has_unbalance()
     {
@@ -175,6 +177,16 @@ pub(crate) fn reduced_blocks(
     Ok(Some((blocks, worst.total)))
 }
 
+/// Whether gyroscopic forces are a damping matrix that a basis knows: the speed is fixed and stiffens nothing. Up to the size of all
+/// modes their poles, or factors, take less time, and beside modal damping factors with a term of low rank.
+fn may_rotate(request: &Request<'_>) -> bool {
+    let structure = request.model.structure();
+    matches!(structure.speed, Speed::Fixed(_))
+        && !structure.has(MatrixKind::StiffnessSpeed2)
+        && !structure.has_modal_damping()
+        && (request.is_forced() || (request.ndof() > ALL_UP_TO && !request.sweep.is_single()))
+}
+
 /// Largest allowed error by motions that a basis lacks. Where all modes are an alternative, the basis must be as
 /// exact as they are.
 fn limit(request: &Request<'_>) -> f64 {
@@ -218,7 +230,7 @@ fn declined<T>(forced: bool) -> Result<Option<T>> {
     fail!(
         Unsupported,
         "flexibility = krylov needs Hermitian stiffness and mass, a mass by which K + shift M is positive definite, and neither \
-         structural matrix, aerodynamic influence, a speed of rotation or unbalance"
+         structural matrix, aerodynamic influence, unbalance, a speed tied to the frequency nor one that stiffens"
     )
 }
 
@@ -279,6 +291,7 @@ fn wave_of(
         frequency: reference_frequency(request, group),
         instead_of: instead_of(request, group),
         memory_limit: request.options.memory_limit,
+        sampled_with: (request.ndof() <= WAVE_REDUCTION_DIRECT_UP_TO).then(|| request.loss_factor.unwrap_or(0.0)),
     };
     let Some((wave, error)) = prepare(&matrices, inputs, (limit, most), error, interrupt)? else {
         return Ok(None);
@@ -328,13 +341,14 @@ fn certificate_of(
     let mut worst = Certificate::default();
     // The highest harmonic needs the largest basis.
     for &(i, conjugated) in group.members.iter().rev() {
-        if worst.basis > enough {
-            break;
-        }
         let view = ReducedView {
             wave: Arc::clone(wave),
             conjugated,
         };
+        // A second sample of one frequency adds nothing, so that the worst of all harmonics has the next one.
+        if worst.basis > enough && !(request.sweep.is_single() && is_sampled(&view)) {
+            break;
+        }
         let number = request.numbers[i];
         let at = (view.clone(), 0, request.loss_factor.unwrap_or(0.0));
         let block = reduced_block(request.model, number, request.contacts, |c| kappa(c, number), at)?;

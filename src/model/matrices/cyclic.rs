@@ -104,14 +104,23 @@ impl Structure {
         self.residue_matrix(which, self.residue(harmonic as i64), harmonic == 0, true)
     }
 
-    /// The same without modal damping.
-    pub(crate) fn wave_matrix_beside_modes(&self, which: MatrixKind, harmonic: usize) -> Result<Csc> {
-        self.residue_matrix(which, self.residue(harmonic as i64), harmonic == 0, false)
+    /// The damping matrix of a wave without modal damping.
+    pub(crate) fn damping_beside_modes(&self, wave: Wave) -> Result<Csc> {
+        let (residue, real) = self.residue_of_wave(wave);
+        self.residue_matrix(MatrixKind::Damping, residue, real, false)
     }
 
-    /// The modal damping matrix that harmonic `harmonic` has, or that of the other sense, to be conjugated.
-    pub(crate) fn modal_damping_of_harmonic(&self, harmonic: usize) -> Option<(&KeptMatrix, Form)> {
-        self.of_residue(&self.modal_damping, self.residue(harmonic as i64))
+    /// The modal damping matrix that a wave has, or that of the other sense, to be conjugated.
+    pub(crate) fn modal_damping_of_wave(&self, wave: Wave) -> Option<(&KeptMatrix, Form)> {
+        self.of_residue(&self.modal_damping, self.residue_of_wave(wave).0)
+    }
+
+    /// Residue of a wave, and whether it has the real part of complex matrices alone, as the mean.
+    fn residue_of_wave(&self, wave: Wave) -> (usize, bool) {
+        match wave {
+            Wave::Harmonic(h) => (self.residue(h as i64), h == 0),
+            Wave::Diameter(d) => (self.residue_of(d), false),
+        }
     }
 
     /// The matrix of the wave in which sector s + 1 lags by 2π·diameter/N.

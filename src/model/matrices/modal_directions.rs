@@ -6,7 +6,8 @@ use crate::interrupt::Interrupt;
 use crate::linalg::iterative::block_krylov::SparseVector;
 use crate::linalg::sparse_storage::kept_matrix::KeptMatrix;
 use crate::linalg::sparse_storage::sparse::{Columns, Csc, Form};
-use crate::model::matrices::structure::{MatrixKind, Structure};
+use crate::model::matrices::structure::Structure;
+use crate::model::matrices::wave::Wave;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the directions of the modal damping";
@@ -24,24 +25,24 @@ const MOST_DAMPED_MODES: usize = 200;
 /// Kind: rounding.
 const LEFT_OF_MODES: f64 = 1e-13;
 
-/// Damping of a harmonic without that of modes, and the columns of L; `None` where the modal damping has no few directions.
+/// Damping of a wave without that of modes, and the columns of L; `None` where the modal damping has no few directions.
 ///
 /// # Errors
 /// As [`Structure::wave_matrix`]; `StoppedByCaller`.
 pub(crate) fn split_damping(
     structure: &Structure,
-    harmonic: usize,
+    wave: Wave,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<(Csc, Vec<SparseVector>)>> {
     let n = structure.ndof();
     if n <= WHOLE_UP_TO || structure.whole_wheel().is_some() {
         return Ok(None);
     }
-    let Some((matrix, form)) = structure.modal_damping_of_harmonic(harmonic) else {
+    let Some((matrix, form)) = structure.modal_damping_of_wave(wave) else {
         return Ok(None);
     };
     // The mean has the real part alone.
-    if harmonic == 0 && !matrix.is_real() {
+    if matches!(wave, Wave::Harmonic(0)) && !matrix.is_real() {
         return Ok(None);
     }
     let most = (n / DEGREES_PER_MODE).min(MOST_DAMPED_MODES);
@@ -53,7 +54,7 @@ pub(crate) fn split_damping(
             *z = z.conj();
         }
     }
-    let rest = structure.wave_matrix_beside_modes(MatrixKind::Damping, harmonic)?;
+    let rest = structure.damping_beside_modes(wave)?;
     Ok(Some((rest, directions)))
 }
 

@@ -10,5 +10,6 @@ pub mod quadratic_problem;
 pub mod quadratic_search;
 pub mod repeated_modes;
 pub mod resonances;
+pub(crate) mod shifted_factors;
 pub mod slip_capacity;
 pub mod static_tangents;

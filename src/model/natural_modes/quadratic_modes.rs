@@ -9,13 +9,13 @@ use crate::error::{Result, Status, check_memory, fail, try_copy, try_extend, try
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::general_eigen;
 use crate::linalg::exact_sums::quadratic::{ComplexSum, product, quadratic};
-use crate::linalg::factors::factor::Factor;
-use crate::linalg::libraries::DMatrix;
+use crate::linalg::libraries::{DMatrix, DVector};
 use crate::linalg::sparse_storage::sparse::Csc;
 use crate::model::natural_modes::all_undamped::all_undamped;
 use crate::model::natural_modes::linear_modes::{ALL_MODES_UP_TO, finds_all};
 use crate::model::natural_modes::quadratic_problem::{Pair, QUADRATIC_PROBLEM_REAL, Quadratic, is_one};
 use crate::model::natural_modes::quadratic_search::lowest_by_search;
+use crate::model::natural_modes::shifted_factors::ShiftedFactors;
 use num_complex::Complex64;
 
 /// Relative distance of the shift from an eigenvalue in its correction.
@@ -137,7 +137,12 @@ impl Quadratic<'_> {
             }
             Ok(basis.adjoint() * moved)
         };
-        let (k, c) = (project(self.stiffness)?, project(self.damping)?);
+        let (k, mut c) = (project(self.stiffness)?, project(self.damping)?);
+        for direction in self.modal {
+            let seen = |j: usize| direction.iter().map(|&(p, z)| z.conj() * basis[(p, j)]).sum();
+            let seen = DVector::<Complex64>::from_fn(r, |j, _| seen(j));
+            c += &seen.map(|z| z.conj()) * seen.transpose();
+        }
         // In energy coordinates, (Ω p, λ p) with the stiffness Ω² of each motion, no entry is larger than a frequency, and stiff motions
         // do not spoil soft ones.
         let mut frequencies = try_vec(r, 0.0, CONTEXT)?;
@@ -194,14 +199,21 @@ impl Quadratic<'_> {
         let (mut eigenvalue, mut x) = (*start, try_copy(shape, CONTEXT)?);
         let v = self.mass.times(shape, CONTEXT)?;
         let project = |z: &[Complex64]| -> Complex64 { v.iter().zip(z).map(|(v, z)| v.conj() * z).sum() };
-        let mut factor = Factor::new(&self.matrix(eigenvalue)?, 2)?;
+        let mut factors: Option<ShiftedFactors<'_>> = None;
         let mut last = f64::INFINITY;
         for _ in 0..QUADRATIC_MODES_CORRECTIONS {
             interrupt.check()?;
-            factor.factor(&self.matrix(eigenvalue * (1.0 + QUADRATIC_MODES_OFFSET))?, interrupt)?;
+            let shift = eigenvalue * (1.0 + QUADRATIC_MODES_OFFSET);
+            let factors = match &mut factors {
+                Some(factors) => {
+                    factors.renew(shift, interrupt)?;
+                    factors
+                }
+                none => none.insert(ShiftedFactors::new(self, shift, 2, interrupt)?),
+            };
             let mut columns = self.times(eigenvalue, &x)?;
             try_extend(&mut columns, &self.slope_times(eigenvalue, &x)?, CONTEXT)?;
-            factor.solve(&mut columns, false, interrupt)?;
+            factors.solve(&mut columns, false, interrupt)?;
             let (residual, slope) = columns.split_at(n);
             let step = -project(residual) / project(slope);
             let (mut change, mut size) = (0.0_f64, 0.0_f64);

@@ -2,6 +2,7 @@
 
 use crate::error::{Result, try_push, try_vec};
 use crate::linalg::exact_sums::quadratic::{ComplexSum, QUADRATIC_ROUNDING, form, product, quadratic, terms};
+use crate::linalg::factors::low_rank_term::add_term_product;
 use crate::linalg::inner;
 use crate::linalg::iterative::block_krylov::SparseVector;
 use crate::linalg::sparse_storage::held_rows::MovingRows;
@@ -31,7 +32,7 @@ pub struct Quadratic<'a> {
     pub damping: &'a Csc,
     /// Stiffness matrix K, structural damping included.
     pub stiffness: &'a Csc,
-    /// Columns of L of damping L Lᴴ beside C, which a search within a range knows.
+    /// Columns of L of damping L Lᴴ beside C.
     pub modal: &'a [SparseVector],
 }
 
@@ -104,26 +105,34 @@ impl Quadratic<'_> {
         if quadratic(self.stiffness, x).abs() > QUADRATIC_ROUNDING * terms(self.stiffness, x) {
             return None;
         }
-        let force = form(self.damping, &self.damping.values, x);
+        let force = form(self.damping, &self.damping.values, x) + self.modal_form(x);
         let is_real = force.im.abs() <= QUADRATIC_PROBLEM_REAL * force.norm();
         is_real.then(|| -force.re / quadratic(self.mass, x))
+    }
+
+    /// Form xᴴL Lᴴx of the damping beside C.
+    fn modal_form(&self, x: &[Complex64]) -> f64 {
+        let seen = |direction: &SparseVector| direction.iter().map(|&(p, z)| z.conj() * x[p]).sum::<Complex64>();
+        self.modal.iter().map(|direction| seen(direction).norm_sqr()).sum()
     }
 
     /// Whether a motion with a real eigenvalue λ > 0 is more than a rigid motion with rounding, by xᴴ(K + λC)x, which
     /// is −λ² xᴴMx.
     fn grows(&self, rate: f64, x: &[Complex64]) -> bool {
-        let force = quadratic(self.stiffness, x) + rate * quadratic(self.damping, x);
-        force < -QUADRATIC_ROUNDING * (terms(self.stiffness, x) + rate * terms(self.damping, x))
+        let modal = self.modal_form(x);
+        let force = quadratic(self.stiffness, x) + rate * (quadratic(self.damping, x) + modal);
+        force < -QUADRATIC_ROUNDING * (terms(self.stiffness, x) + rate * (terms(self.damping, x) + modal))
     }
 
     /// Whether a motion is rigid up to rounding: its inertia |λ²| xᴴMx is below the rounding of the forces. The two
     /// zero eigenvalues of a motion that nothing holds are apart by the root of rounding, in any direction.
     fn is_rigid(&self, eigenvalue: Complex64, x: &[Complex64]) -> bool {
-        let forces = terms(self.stiffness, x) + eigenvalue.norm() * terms(self.damping, x);
+        let damping = terms(self.damping, x) + self.modal_form(x);
+        let forces = terms(self.stiffness, x) + eigenvalue.norm() * damping;
         eigenvalue.norm_sqr() * quadratic(self.mass, x) <= QUADRATIC_ROUNDING * forces
     }
 
-    /// Matrix λ²M + λC + K at an eigenvalue λ.
+    /// Matrix λ²M + λC + K at an eigenvalue λ, without the damping beside C.
     pub fn matrix(&self, eigenvalue: Complex64) -> Result<Csc> {
         Csc::sum(
             self.mass.rows,
@@ -135,7 +144,7 @@ impl Quadratic<'_> {
         )
     }
 
-    /// Product (λ²M + λC + K) x, whose terms may cancel beside stiff springs.
+    /// Product (λ²M + λC + λL Lᴴ + K) x, whose terms may cancel beside stiff springs.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -153,13 +162,15 @@ impl Quadratic<'_> {
                 *y += factor * sum.total();
             }
         }
+        add_term_product(self.modal, eigenvalue, false, x, &mut y);
         Ok(y)
     }
 
-    /// Product (2λM + C) x, the slope of the matrix by λ.
+    /// Product (2λM + C + L Lᴴ) x, the slope of the matrix by λ.
     pub fn slope_times(&self, eigenvalue: Complex64, x: &[Complex64]) -> Result<Vec<Complex64>> {
         let mut y = self.damping.times(x, CONTEXT)?;
         self.mass.multiply_add(2.0 * eigenvalue, x, &mut y);
+        add_term_product(self.modal, Complex64::ONE, false, x, &mut y);
         Ok(y)
     }
 }

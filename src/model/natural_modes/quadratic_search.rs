@@ -4,9 +4,11 @@
 //! first disc about a shift near iw/2 covers them up to a share of w on both sides of the imaginary axis; rectangles further out, in which
 //! strong dampers put few eigenvalues, are covered by discs of their own.
 
-use crate::error::{Result, Status, try_push};
+use crate::error::{Result, Status, try_push, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::dense::hermitian;
 use crate::linalg::exact_sums::quadratic::{QUADRATIC_ROUNDING, quadratic, terms};
+use crate::linalg::factors::factor::Factor;
 use crate::linalg::iterative::lanczos;
 use crate::linalg::iterative::lanczos::DENSE_IF_HARD;
 use crate::linalg::iterative::near_shift::{Goal, Near, NearShift};
@@ -312,6 +314,35 @@ fn structural(problem: &Quadratic<'_>, hermitian: &Csc) -> Result<Option<Csc>> {
     Ok((found.max_abs() > f64::EPSILON * hermitian.max_abs()).then_some(found))
 }
 
+/// Largest xᴴL Lᴴx/xᴴMx of the damping beside C, an eigenvalue of LᴴM⁻¹L; infinite where some motion has no mass.
+fn largest_rate(problem: &Quadratic<'_>, interrupt: &Interrupt<'_>) -> Result<f64> {
+    let (n, count) = (problem.mass.rows, problem.modal.len());
+    if count == 0 {
+        return Ok(0.0);
+    }
+    let mut moved = try_vec(n * count, Complex64::ZERO, CONTEXT)?;
+    for (column, direction) in moved.chunks_exact_mut(n).zip(problem.modal) {
+        for &(p, z) in direction {
+            column[p] = z;
+        }
+    }
+    let mut factor = Factor::new(problem.mass, count)?;
+    let solved = factor.factor(problem.mass, interrupt);
+    match solved.and_then(|()| factor.solve(&mut moved, false, interrupt)) {
+        Ok(()) => {}
+        Err(e) if e.status == Status::Singular => return Ok(f64::INFINITY),
+        Err(e) => return Err(e),
+    }
+    let mut rates = try_vec(count * count, Complex64::ZERO, CONTEXT)?;
+    for (rates, x) in rates.chunks_exact_mut(count).zip(moved.chunks_exact(n)) {
+        for (rate, direction) in rates.iter_mut().zip(problem.modal) {
+            *rate = direction.iter().map(|&(p, z)| z.conj() * x[p]).sum();
+        }
+    }
+    let (values, _) = hermitian::eigen(&mut rates, count, interrupt)?;
+    Ok(values.last().copied().unwrap_or(0.0))
+}
+
 /// Whether no mode of a frequency up to `height` lies further from the imaginary axis than `covered`, on the left or on the right.
 ///
 /// A mode λ = a + ib with motion x, m = xᴴMx, c = xᴴCx of the Hermitian part and k + id = xᴴKx, k > 0, has
@@ -347,6 +378,15 @@ fn is_bounded(
     // The bounds hold for k ≥ −covered² m.
     let stiffer = sum((1.0, hermitian), (covered * covered, problem.mass))?;
     if !resists_all_motion(&stiffer, interrupt)? {
+        return Ok(false);
+    }
+    // Damping of modes moves eigenvalues to the left alone.
+    let covered = if side < 0.0 {
+        covered - largest_rate(problem, interrupt)?
+    } else {
+        covered
+    };
+    if covered.is_nan() || covered <= 0.0 {
         return Ok(false);
     }
     if damping.max_abs() <= f64::EPSILON * problem.damping.max_abs() {

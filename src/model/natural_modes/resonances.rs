@@ -147,7 +147,7 @@ fn small_motion_frequencies(
     ];
     let stiffness = Csc::sum(mass.rows, &terms)?;
     if model.structure().has_gyroscopic_modes(h)? {
-        let (damping, modal) = match split_damping(structure, h, interrupt)? {
+        let (damping, modal) = match split_damping(structure, Wave::Harmonic(h), interrupt)? {
             Some(found) => found,
             None => (structure.wave_matrix(MatrixKind::Damping, h)?, Vec::new()),
         };

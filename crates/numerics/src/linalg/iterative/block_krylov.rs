@@ -338,6 +338,29 @@ impl<T: Entry> BlockKrylov<T> {
         Ok(true)
     }
 
+    /// Adds the parts of other motions, n numbers each, that the basis does not hold; `false` where it holds them all. Rests of all
+    /// columns stay candidates where no block was added by its images before.
+    ///
+    /// # Errors
+    /// As [`Self::start`].
+    pub fn add(&mut self, mut block: Vec<T>, interrupt: &Interrupt<'_>) -> Result<bool> {
+        let (n, first) = (self.n, self.order());
+        let mut weighted = try_vec(block.len(), T::NONE, CONTEXT)?;
+        self.weigh(&block, &mut weighted, interrupt)?;
+        let sizes = norms(&block, &weighted, n);
+        self.project(&mut block, &weighted, interrupt)?;
+        self.append_new(block, &sizes, interrupt)?;
+        let new = &self.basis[first * n..];
+        if new.is_empty() {
+            return Ok(false);
+        }
+        let mut weighted = try_vec(new.len(), T::NONE, CONTEXT)?;
+        self.weigh(new, &mut weighted, interrupt)?;
+        remove_part(&mut self.rest, new, &weighted, n, interrupt)?;
+        self.images(first, interrupt)?;
+        Ok(true)
+    }
+
     fn append(&mut self, block: &[T]) -> Result<()> {
         self.basis
             .try_reserve_exact(block.len())
@@ -348,7 +371,15 @@ impl<T: Entry> BlockKrylov<T> {
 
     /// Appends the part of the candidates that is not in the basis, and computes the images of the new block; `sizes`
     /// are those of the images from which the candidates came.
-    fn absorb(&mut self, mut block: Vec<T>, sizes: &[f64], interrupt: &Interrupt<'_>) -> Result<()> {
+    fn absorb(&mut self, block: Vec<T>, sizes: &[f64], interrupt: &Interrupt<'_>) -> Result<()> {
+        let first = self.order();
+        self.append_new(block, sizes, interrupt)?;
+        self.last = first;
+        self.images(first, interrupt)
+    }
+
+    /// Appends the directions of a block, orthogonal to the basis but for rounding, that are more than rounding of `sizes`.
+    fn append_new(&mut self, mut block: Vec<T>, sizes: &[f64], interrupt: &Interrupt<'_>) -> Result<()> {
         let n = self.n;
         let first = self.order();
         let mut weighted = try_vec(block.len(), T::NONE, CONTEXT)?;
@@ -367,10 +398,7 @@ impl<T: Entry> BlockKrylov<T> {
             let kept = orthonormalise(&mut block, &mut weighted, n, &sizes, interrupt)?;
             block.truncate(kept * n);
         }
-        self.append(&block)?;
-        drop((weighted, block));
-        self.last = first;
-        self.images(first, interrupt)
+        self.append(&block)
     }
 
     /// Computes the images of the columns from `first` on, and adds them to the remaining parts of earlier ones.
@@ -413,9 +441,8 @@ impl<T: Entry> BlockKrylov<T> {
         }
         let mut weighted = try_copy(&rest, CONTEXT)?;
         self.factor.solve(&mut rest, interrupt)?;
-        let mut sizes = core::mem::take(&mut self.sizes);
-        sizes.extend(norms(&rest, &weighted, n));
-        self.sizes = sizes;
+        let known = core::mem::take(&mut self.sizes);
+        self.sizes = interleaved(&known, &norms(&rest, &weighted, n), count)?;
         // VᴴA A⁻¹O V = VᴴO V: the part in the basis needs no other product.
         interrupt.check_before((4 * order * rest.len()) as u64)?;
         matmul(
@@ -428,11 +455,8 @@ impl<T: Entry> BlockKrylov<T> {
         );
         let before = self.rest.len();
         if before > 0 {
-            let mut all = core::mem::take(&mut self.rest);
-            all.try_reserve_exact(rest.len())
-                .map_err(|_| Error::out_of_memory(CONTEXT))?;
-            all.extend_from_slice(&rest);
-            rest = all;
+            let known = core::mem::take(&mut self.rest);
+            rest = interleaved(&known, &rest, count)?;
             // The rest has become small beside the images, whose products with it are rounded by their own size.
             weighted = try_vec(rest.len(), T::NONE, CONTEXT)?;
             self.weigh(&rest, &mut weighted, interrupt)?;
@@ -471,6 +495,19 @@ impl<T: Entry> BlockKrylov<T> {
         );
         Ok(())
     }
+}
+
+/// The numbers of `count` operators one after the other: of each those known before, then the new ones.
+fn interleaved<N: Copy>(known: &[N], new: &[N], count: usize) -> Result<Vec<N>> {
+    let mut all = Vec::new();
+    all.try_reserve_exact(known.len() + new.len())
+        .map_err(|_| Error::out_of_memory(CONTEXT))?;
+    let (of_known, of_new) = (known.len() / count, new.len() / count);
+    for o in 0..count {
+        all.extend_from_slice(&known[o * of_known..(o + 1) * of_known]);
+        all.extend_from_slice(&new[o * of_new..(o + 1) * of_new]);
+    }
+    Ok(all)
 }
 
 /// x ← x − U Uᴴ A x for orthonormal columns U; A U is given.
