@@ -25,6 +25,7 @@ use crate::model::matrices::wave::Wave;
 use crate::options::Range;
 use crate::options::{Flexibility, SolverOptions};
 use num_complex::Complex64;
+use std::fmt::Arguments;
 use std::sync::Arc;
 
 const CONTEXT: &str = "the reduced structure";
@@ -135,6 +136,7 @@ pub(crate) fn reduced_blocks(
             Ok(Some(found)) => found,
             Ok(None) => return declined(forced),
             Err(e) if is_optional && e.status == Status::NoConvergence => return Ok(None),
+            Err(e) if e.status == Status::NoConvergence => return spoilt(format_args!("{}", e.message())),
             Err(e) => return Err(e),
         };
         worst = worst.max(error);
@@ -143,13 +145,10 @@ pub(crate) fn reduced_blocks(
         }
         // NaN is no certificate either.
         if error.total.is_nan() || error.total > USELESS_BASIS {
-            return fail!(
-                NoConvergence,
-                "flexibility on a basis: its motions err by {:e}, rounding included, needs at most {USELESS_BASIS}; take flexibility = direct, \
-                 or a narrower range. Where some stiffness is far above that of the structure, as of a penalty, make what it connects \
-                 one degree of freedom",
+            return spoilt(format_args!(
+                "its motions err by {:e}, rounding included, needs at most {USELESS_BASIS}",
                 error.total
-            );
+            ));
         }
         for &(i, conjugated) in &group.members {
             let wave = Arc::clone(&wave);
@@ -185,6 +184,15 @@ fn may_rotate(request: &Request<'_>) -> bool {
         && !structure.has(MatrixKind::StiffnessSpeed2)
         && !structure.has_modal_damping()
         && (request.is_forced() || (request.ndof() > ALL_UP_TO && !request.sweep.is_single()))
+}
+
+/// Refuses a basis that rounding spoils.
+fn spoilt<T>(reason: Arguments<'_>) -> Result<T> {
+    fail!(
+        NoConvergence,
+        "flexibility on a basis: {reason}; take flexibility = direct, or a narrower range. Where some stiffness is far above that of the \
+         structure, as of a penalty, make what it connects one degree of freedom"
+    )
 }
 
 /// Largest allowed error by motions that a basis lacks. Where all modes are an alternative, the basis must be as

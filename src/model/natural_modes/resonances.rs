@@ -1,13 +1,13 @@
 //! Resonances of the structure with its contacts in their linear state: frequencies and half widths, where the response
 //! of a harmonic has its poles.
 
-use crate::error::{Result, Status, check_memory, try_copy, try_extend, try_push, try_vec};
+use crate::error::{Error, Result, Status, check_memory, try_copy, try_extend, try_push};
 use crate::interrupt::Interrupt;
 use crate::linalg::dense::eigen;
-use crate::linalg::dense::general_eigen;
 use crate::linalg::exact_sums::quadratic::about_quadratic;
 use crate::linalg::factors::inertia::eigenvalues_below;
 use crate::linalg::iterative::{lanczos, spectrum_slices};
+use crate::linalg::libraries::{DMatrix, Schur};
 use crate::linalg::sparse_storage::held_rows::MovingRows;
 use crate::linalg::sparse_storage::sparse::{Csc, Form};
 use crate::model::Model;
@@ -87,6 +87,10 @@ const RESONANCES_EIGEN_COPIES: usize = 8;
 /// half width.
 /// Kind: tuned; measured on: not recorded.
 const COUPLED: f64 = 0.1;
+
+/// Most iterations of the eigenvalues of coupled modes.
+/// Kind: cap.
+const RESONANCES_MAX_ITERATIONS: usize = 10_000;
 
 const CONTEXT: &str = "the resonances";
 
@@ -359,16 +363,18 @@ impl Widths {
             count.saturating_mul(count).saturating_mul(RESONANCES_EIGEN_COPIES),
             CONTEXT,
         )?;
-        let mut matrix = try_vec(count * count, Complex64::ZERO, CONTEXT)?;
-        for j in 0..count {
-            for i in 0..count {
-                matrix[j * count + i] = half_i * self.between(&shapes[i], &shapes[j], frequencies[i])?;
+        let mut matrix = DMatrix::<Complex64>::zeros(count, count);
+        for i in 0..count {
+            for j in 0..count {
+                matrix[(i, j)] = half_i * self.between(&shapes[i], &shapes[j], frequencies[i])?;
             }
-            matrix[j * count + j] += frequencies[j];
+            matrix[(i, i)] += frequencies[i];
         }
-        general_eigen::values(&matrix, count, &Interrupt::none())?
-            .into_iter()
-            .try_for_each(add)
+        let Some(schur) = Schur::try_new(matrix, f64::EPSILON, RESONANCES_MAX_ITERATIONS) else {
+            return Err(Error::new(Status::NoConvergence, format_args!("coupled resonances")));
+        };
+        let (_, triangular) = schur.unpack();
+        (0..count).try_for_each(|i| add(triangular[(i, i)]))
     }
 }
 

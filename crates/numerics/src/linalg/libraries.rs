@@ -2,6 +2,6 @@
 
 pub use faer::linalg::matmul::matmul;
 pub use faer::{Accum, MatMut, MatRef, Par};
-pub use nalgebra::{ColPivQR, ComplexField, DMatrix, DVector, SVD, SymmetricEigen};
+pub use nalgebra::{ColPivQR, ComplexField, DMatrix, DVector, SVD, Schur, SymmetricEigen};
 pub use pulp::bytemuck::cast_slice;
 pub use pulp::{Arch, Simd, WithSimd};
