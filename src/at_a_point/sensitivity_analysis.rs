@@ -126,7 +126,7 @@ pub fn sensitivity_with(
         at.solve(quantity, interrupt)?
     } else {
         forced
-            .insert(stored_point(branch, (point, omega), watched(branch, of), interrupt)?)
+            .insert(stored_point(branch, point, omega, watched(branch, of), interrupt)?)
             .adjoint(motion, omega)?
     };
     let Some(adjoint) = adjoint else {
@@ -156,7 +156,7 @@ pub fn sensitivity_with(
     }
     if let Some((at, amplitude)) = forced.as_mut().zip(peak_amplitude(branch, of, point))
         && !is_frequency(of)
-        && is_steep((omega, adjoint.by_omega), amplitude)
+        && is_steep(omega, adjoint.by_omega, amplitude)
     {
         let mut reasons = try_copy(&found.reasons, CONTEXT)?;
         let shift = peak_shift(at, motion, omega, amplitude, parameters.len(), |adjoint, values| {

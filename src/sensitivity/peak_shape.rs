@@ -11,17 +11,18 @@ use crate::sensitivity::{ForcedPoint, SampledModel};
 const SMOOTH_PEAK: f64 = 1e-6;
 
 /// Whether a slope at a frequency is too large for a peak that is smooth.
-pub fn is_steep((omega, slope): (f64, f64), amplitude: f64) -> bool {
+pub fn is_steep(omega: f64, slope: f64, amplitude: f64) -> bool {
     (omega * slope).abs() > SMOOTH_PEAK * amplitude
 }
 
-/// A stored point of a forced response with the response that is differentiated in place of the amplitude, if one is given.
+/// A stored point of a forced response, at its frequency, with the response that is differentiated in place of the amplitude, if one is given.
 ///
 /// # Errors
 /// `OutOfMemory`; those of callbacks; `StoppedByCaller`.
 pub fn stored_point<'a>(
     branch: &'a Branch,
-    (point, omega): (usize, f64),
+    point: usize,
+    omega: f64,
     watched: Option<&ResponseSeries>,
     interrupt: &'a Interrupt<'a>,
 ) -> Result<ForcedPoint<'a>> {
@@ -44,6 +45,6 @@ pub fn is_corner(branch: &Branch, point: usize, interrupt: &Interrupt<'_>) -> Re
     };
     // The first response leads the peaks of the branch.
     let first = branch.responses().first().filter(|first| !first.response().is_plain());
-    let adjoint = stored_point(branch, (point, omega), first, interrupt)?.adjoint(motion, omega)?;
-    Ok(adjoint.is_some_and(|adjoint| is_steep((omega, adjoint.by_omega), peak.amplitude)))
+    let adjoint = stored_point(branch, point, omega, first, interrupt)?.adjoint(motion, omega)?;
+    Ok(adjoint.is_some_and(|adjoint| is_steep(omega, adjoint.by_omega, peak.amplitude)))
 }

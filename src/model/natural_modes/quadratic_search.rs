@@ -76,8 +76,7 @@ pub fn lowest_by_search(
     for side in [-1.0, 1.0] {
         let mut inside = covered;
         loop {
-            let strip = (inside, first.height);
-            if is_bounded(problem, hermitian, side, strip, interrupt)? {
+            if is_bounded(problem, hermitian, side, inside, first.height, interrupt)? {
                 break;
             }
             if inside >= FARTHEST * first.height {
@@ -355,7 +354,8 @@ fn is_bounded(
     problem: &Quadratic<'_>,
     hermitian: &Csc,
     side: f64,
-    (covered, height): (f64, f64),
+    covered: f64,
+    height: f64,
     interrupt: &Interrupt<'_>,
 ) -> Result<bool> {
     let n = problem.mass.rows;
