@@ -187,7 +187,7 @@ def floquet():
 
 
 #: Examples that print points of a curve, which lie where its steps lead.
-_PLACES = ("BranchPoints.point", "BranchPoints.synthesis", "HasUnits.units")
+_PLACES = ("BranchPoints.point", "BranchPoints.synthesis", "HasUnits.units", "_Analyses.forced_response", "_tables.from_dataframe")
 
 _NUMBER = re.compile(r"-?\d+(?:\.\d*)?(?:e[+-]?\d+)?")
 

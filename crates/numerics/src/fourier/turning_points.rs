@@ -28,6 +28,10 @@ const TURNING_POINTS_POINTS_PER_WAVE: usize = 8;
 /// Kind: tuned; measured on: not recorded.
 const TURNING_POINTS_TABLE_LIMIT: usize = 40;
 
+/// Most grid points of a quarter of a turn that a table has.
+/// Kind: fixed.
+const QUARTER: usize = TURNING_POINTS_POINTS_PER_WAVE * TURNING_POINTS_TABLE_LIMIT / 4;
+
 /// Finds every turning point of motions with one harmonic set: x′ and x″ on a grid, then roots of x′ in its cells, where it is
 /// nearly a cubic.
 ///
@@ -262,15 +266,15 @@ fn is_far(first: f64, block: &[f64; TURNING_POINTS_BLOCK], far: f64) -> bool {
 /// Sines of the angles that divide a turn into equal parts, whose number is a multiple of 4.
 struct Sines {
     /// Sines in the first quarter of the turn; and the number of parts of a turn.
-    first: [f64; 2 * TURNING_POINTS_TABLE_LIMIT + 1],
+    first: [f64; QUARTER + 1],
     quarter: usize,
 }
 
 impl Sines {
-    /// The table for at most 8 `TURNING_POINTS_TABLE_LIMIT` parts.
+    /// The table for at most four times [`QUARTER`] parts.
     fn new(parts: usize) -> Self {
         let quarter = parts / 4;
-        let mut first = [0.0; 2 * TURNING_POINTS_TABLE_LIMIT + 1];
+        let mut first = [0.0; QUARTER + 1];
         for (k, sine) in first[..=quarter].iter_mut().enumerate() {
             *sine = (TAU * k as f64 / parts as f64).sin();
         }
