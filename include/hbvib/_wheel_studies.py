@@ -275,7 +275,8 @@ class _WheelStudies(_HasUnits):
         peaks, curve = branch.responses[0].peaks(), branch.responses[0].amplitude
         start, stop = _range("omega", omega, "(0.8, 1.6)")
         if len(peaks.point) == 0:
-            raise ArgumentError(f"no peak of the watched blade lies within omega = {start} .. {stop}; widen it", Status.E_ARGUMENT, 2)
+            why = "widen it" if branch.status == Status.OK else f"the sweep ended early: {_sentence(branch.status)}"
+            raise ArgumentError(f"no peak of the watched blade lies within omega = {start} .. {stop}; {why}", Status.E_ARGUMENT, 2)
         best = int(np.argmax(peaks.amplitude))
         if branch.status == Status.OK and max(curve[0], curve[-1]) > peaks.amplitude[best]:
             raise ArgumentError(f"the watched blade moves more at an end of omega = {start} .. {stop}, {max(curve[0], curve[-1]):.6g}, "
