@@ -32,6 +32,10 @@ const BESIDE_AXIS: f64 = 0.5;
 const WIDER: f64 = 2.5;
 const FARTHEST: f64 = 8.0;
 
+/// That end with structural damping, where a bound mostly ends the search before.
+/// Kind: cap.
+const FARTHEST_HELD: f64 = 1e4;
+
 /// Most eigenvalues in a rectangle beyond the number that is requested: more are overdamped motions next to each other.
 /// Kind: cap.
 const MOST_ASIDE: usize = 60;
@@ -73,15 +77,17 @@ pub fn lowest_by_search(
         Err(e) => return Err(e),
     };
     let covered = first.covered();
+    // Structural damping gives a frequency to motions that strong dampers hold, however far away.
+    let has_structural = structural(problem, hermitian)?.is_some();
+    let farthest = if has_structural { FARTHEST_HELD } else { FARTHEST } * first.height;
     for side in [-1.0, 1.0] {
         let mut inside = covered;
         loop {
             if is_bounded(problem, hermitian, side, inside, first.height, interrupt)? {
                 break;
             }
-            if inside >= FARTHEST * first.height {
-                // Structural damping gives a frequency to motions that strong dampers hold.
-                if problem.mass.rows <= DENSE_IF_HARD && structural(problem, hermitian)?.is_some() {
+            if inside >= farthest {
+                if problem.mass.rows <= DENSE_IF_HARD && has_structural {
                     return Ok(None);
                 }
                 break;
