@@ -212,7 +212,7 @@ impl<'a> ForcedEstimator<'a> {
     fn extent(&mut self, solved: &Solved<'_>, work: &Work) -> Result<Option<Extent>> {
         let set = solved.condensed.set();
         let own = set.numbers().last().copied().unwrap_or(0);
-        // Of a harmonic that neither the point nor its extension carries nothing would be told.
+        // The change of a harmonic that neither the point nor its extension carries is zero over zero.
         let watched = self.asked.responses.iter().map(|response| match response.measure {
             Measure::Harmonic(h) => carried_harmonics::carried_to(set, h),
             _ => 0,

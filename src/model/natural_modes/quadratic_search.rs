@@ -78,12 +78,13 @@ pub fn lowest_by_search(
     };
     let covered = first.covered();
     // Structural damping gives a frequency to motions that strong dampers hold, however far away.
-    let has_structural = structural(problem, hermitian)?.is_some();
+    let bounds = Bounds::new(problem, hermitian, interrupt)?;
+    let has_structural = bounds.structural.is_some();
     let farthest = if has_structural { FARTHEST_HELD } else { FARTHEST } * first.height;
     for side in [-1.0, 1.0] {
         let mut inside = covered;
         loop {
-            if is_bounded(problem, hermitian, side, inside, first.height, interrupt)? {
+            if bounds.hold(side, inside, first.height, interrupt)? {
                 break;
             }
             if inside >= farthest {
@@ -348,55 +349,66 @@ fn largest_rate(problem: &Quadratic<'_>, interrupt: &Interrupt<'_>) -> Result<f6
     Ok(values.last().copied().unwrap_or(0.0))
 }
 
-/// Whether no mode of a frequency up to `height` lies further from the imaginary axis than `covered`, on the left or on the right.
-///
-/// A mode λ = a + ib with motion x, m = xᴴMx, c = xᴴCx of the Hermitian part and k + id = xᴴKx, k > 0, has
-///
-/// > c/m = −a − (a k + b d)/(|λ|² m)
-///
-/// by the real part of λ̄ times its equation. Where |d| is below k covered/height the last term has the sign of the first: −c/m ≤ a ≤ 0 if
-/// c ≥ 0, and a ≤ −c/m if not. A mode of negative k grows by √(−k/m) or less, without D.
-fn is_bounded(
-    problem: &Quadratic<'_>,
-    hermitian: &Csc,
-    side: f64,
-    covered: f64,
-    height: f64,
-    interrupt: &Interrupt<'_>,
-) -> Result<bool> {
-    let n = problem.mass.rows;
-    let sum =
-        |a: (f64, &Csc), b: (f64, &Csc)| Csc::sum(n, &[(a.0.into(), a.1, Form::Plain), (b.0.into(), b.1, Form::Plain)]);
-    if let Some(structural) = structural(problem, hermitian)?
-        && !resists_all_motion(&sum((covered / height, hermitian), (side, &structural))?, interrupt)?
-    {
-        return Ok(false);
+/// Matrices and numbers that bound the real parts of modes.
+struct Bounds<'a> {
+    problem: &'a Quadratic<'a>,
+    hermitian: &'a Csc,
+    structural: Option<Csc>,
+    /// Largest rate of the damping beside C.
+    rate: f64,
+}
+
+impl<'a> Bounds<'a> {
+    fn new(problem: &'a Quadratic<'a>, hermitian: &'a Csc, interrupt: &Interrupt<'_>) -> Result<Self> {
+        Ok(Self {
+            problem,
+            hermitian,
+            structural: structural(problem, hermitian)?,
+            rate: largest_rate(problem, interrupt)?,
+        })
     }
-    let transposed = Csc::sum(n, &[(Complex64::ONE, problem.damping, Form::Transposed)])?;
-    let half = Complex64::new(0.5, 0.0);
-    let damping = Csc::sum(
-        n,
-        &[
-            (half, problem.damping, Form::Plain),
-            (half, &transposed, Form::Conjugated),
-        ],
-    )?;
-    // The bounds hold for k ≥ −covered² m.
-    let stiffer = sum((1.0, hermitian), (covered * covered, problem.mass))?;
-    if !resists_all_motion(&stiffer, interrupt)? {
-        return Ok(false);
+
+    /// Whether no mode of a frequency up to `height` lies further from the imaginary axis than `covered`, on the left or on the right.
+    ///
+    /// A mode λ = a + ib with motion x, m = xᴴMx, c = xᴴCx of the Hermitian part and k + id = xᴴKx, k > 0, has
+    ///
+    /// > c/m = −a − (a k + b d)/(|λ|² m)
+    ///
+    /// by the real part of λ̄ times its equation. Where |d| is below k covered/height the last term has the sign of the first: −c/m ≤ a ≤ 0 if
+    /// c ≥ 0, and a ≤ −c/m if not. A mode of negative k grows by √(−k/m) or less, without D.
+    fn hold(&self, side: f64, covered: f64, height: f64, interrupt: &Interrupt<'_>) -> Result<bool> {
+        let Self { problem, hermitian, .. } = *self;
+        let n = problem.mass.rows;
+        let sum = |a: (f64, &Csc), b: (f64, &Csc)| {
+            Csc::sum(n, &[(a.0.into(), a.1, Form::Plain), (b.0.into(), b.1, Form::Plain)])
+        };
+        if let Some(structural) = &self.structural
+            && !resists_all_motion(&sum((covered / height, hermitian), (side, structural))?, interrupt)?
+        {
+            return Ok(false);
+        }
+        let transposed = Csc::sum(n, &[(Complex64::ONE, problem.damping, Form::Transposed)])?;
+        let half = Complex64::new(0.5, 0.0);
+        let damping = Csc::sum(
+            n,
+            &[
+                (half, problem.damping, Form::Plain),
+                (half, &transposed, Form::Conjugated),
+            ],
+        )?;
+        // The bounds hold for k ≥ −covered² m.
+        let stiffer = sum((1.0, hermitian), (covered * covered, problem.mass))?;
+        if !resists_all_motion(&stiffer, interrupt)? {
+            return Ok(false);
+        }
+        // Damping of modes moves eigenvalues to the left alone.
+        let covered = if side < 0.0 { covered - self.rate } else { covered };
+        if covered.is_nan() || covered <= 0.0 {
+            return Ok(false);
+        }
+        if damping.max_abs() <= f64::EPSILON * problem.damping.max_abs() {
+            return Ok(true);
+        }
+        resists_all_motion(&sum((side, &damping), (covered, problem.mass))?, interrupt)
     }
-    // Damping of modes moves eigenvalues to the left alone.
-    let covered = if side < 0.0 {
-        covered - largest_rate(problem, interrupt)?
-    } else {
-        covered
-    };
-    if covered.is_nan() || covered <= 0.0 {
-        return Ok(false);
-    }
-    if damping.max_abs() <= f64::EPSILON * problem.damping.max_abs() {
-        return Ok(true);
-    }
-    resists_all_motion(&sum((side, &damping), (covered, problem.mass))?, interrupt)
 }
